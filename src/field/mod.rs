@@ -1,0 +1,1 @@
+//! Scalar fields on the surface.

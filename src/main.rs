@@ -1,0 +1,2 @@
+//! catoptric
+fn main() {}
