@@ -39,21 +39,39 @@ pub struct LimitSurface {}
 
 impl LimitSurface {
     /// Refines the mesh and builds its patches and tables.
-    pub fn new(_mesh: &SubdivMesh) -> Result<Self, crate::osd::Error> { todo!() }
+    pub fn new(_mesh: &SubdivMesh) -> Result<Self, crate::osd::Error> {
+        todo!()
+    }
     /// All patches.
-    pub fn patches(&self) -> &[Patch] { todo!() }
+    pub fn patches(&self) -> &[Patch] {
+        todo!()
+    }
     /// Number of ptex faces (holes included).
-    pub fn ptex_count(&self) -> usize { todo!() }
+    pub fn ptex_count(&self) -> usize {
+        todo!()
+    }
     /// Length of the bounding-box diagonal of the control points.
-    pub fn diagonal(&self) -> f64 { todo!() }
+    pub fn diagonal(&self) -> f64 {
+        todo!()
+    }
     /// Bounds of the limit surface (a box that encloses it).
-    pub fn bounds(&self) -> [DVec3; 2] { todo!() }
+    pub fn bounds(&self) -> [DVec3; 2] {
+        todo!()
+    }
     /// The patch at (u,v) of a ptex face and the patch-local (u,v); `None` in a hole.
-    pub fn locate(&self, _ptex: u32, _u: f64, _v: f64) -> Option<(usize, [f64; 2])> { todo!() }
+    pub fn locate(&self, _ptex: u32, _u: f64, _v: f64) -> Option<(usize, [f64; 2])> {
+        todo!()
+    }
     /// Evaluates a patch at its local (u,v), derivatives by the local parameters.
-    pub fn evaluate(&self, _patch: usize, _uv: [f64; 2]) -> Jet { todo!() }
+    pub fn evaluate(&self, _patch: usize, _uv: [f64; 2]) -> Jet {
+        todo!()
+    }
     /// Evaluates a ptex face at (u,v), derivatives by the ptex parameters; `None` in a hole.
-    pub fn evaluate_ptex(&self, _ptex: u32, _u: f64, _v: f64) -> Option<(usize, Jet)> { todo!() }
+    pub fn evaluate_ptex(&self, _ptex: u32, _u: f64, _v: f64) -> Option<(usize, Jet)> {
+        todo!()
+    }
     /// Control net of a patch, `levels` levels of it where it is irregular.
-    pub fn net(&self, _patch: usize, _levels: usize) -> Net { todo!() }
+    pub fn net(&self, _patch: usize, _levels: usize) -> Net {
+        todo!()
+    }
 }
