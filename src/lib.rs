@@ -2,9 +2,9 @@
 //!
 //! A tour in data-flow order.
 
+pub mod field;
+pub mod gpu;
 pub mod mesh;
 pub mod osd;
 pub mod patch;
 pub mod stam;
-pub mod field;
-pub mod gpu;

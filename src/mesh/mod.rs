@@ -1,6 +1,41 @@
 //! What comes in: a control mesh with Catmull-Clark features, validated before OpenSubdiv sees it.
+//!
+//! [`read`] is the way in from a file. A mesh made through the library passes [`SubdivMesh::validate`] instead; both
+//! run the same checks, because OpenSubdiv 3.5.0 crashes on some invalid meshes and silently accepts others.
+//!
+//! # Default boundary rule
+//! [`Boundary::default`] is `EdgeAndCorner`. An **OBJ file** without an `interpolateboundary` tag gets `EdgeOnly`
+//! instead, because that is what OpenSubdiv's own regression suite does with such a shape.
+
+mod error;
+mod lines;
+mod measure;
+mod obj;
+mod tags;
+mod validate;
+
+use std::path::Path;
 
 use glam::DVec3;
+
+pub use error::{MeshError, Place, Spot};
+pub use validate::{MAX_COORDINATE, MAX_VALENCE};
+
+/// Reads and validates a mesh file. The extension says the format; so far that is `.obj`.
+///
+/// The mesh is named after the file's stem. Vertices and faces keep the order of the file, whatever groups or objects
+/// they are in, so a vertex that two groups share stays one vertex.
+///
+/// # Errors
+/// A file that cannot be read, that is not of its format, or whose mesh does not pass [`SubdivMesh::validate`].
+/// The message is one line: `file:line: what; what to do`.
+pub fn read(path: &Path) -> Result<SubdivMesh, MeshError> {
+    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+    match extension.as_deref() {
+        Some("obj") => obj::read(path),
+        _ => Err(MeshError::UnsupportedFormat { at: Place::file(path) }),
+    }
+}
 
 /// What the subdivision rules do at the boundary of the mesh (OpenSubdiv's `VtxBoundaryInterpolation`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -43,6 +78,9 @@ pub struct Corner {
 }
 
 /// A Catmull-Clark control mesh: polygons, points and features.
+///
+/// Faces are counter-clockwise seen from outside; edges may be shared by more than two faces (non-manifold meshes are
+/// legal). If an edge has several creases or a vertex several corners, the last one counts, as in OpenSubdiv.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct SubdivMesh {
     /// Name for messages and reports (file stem, or `sample`).

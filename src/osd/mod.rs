@@ -1,6 +1,109 @@
-//! OpenSubdiv: topology refinement and the regression reference.
+//! OpenSubdiv 3.5.0 through `ffi/osd.h`: topology refinement ([`Refiner`]) and the regression references ([`Far`],
+//! [`Bfr`]). The only `unsafe` of the crate lives here.
+//!
+//! Each C++ object has one owner that releases it once. OpenSubdiv validates almost nothing, so every mesh passes
+//! [`SubdivMesh::validate`](crate::mesh::SubdivMesh::validate) on its way in.
+#![allow(unsafe_code)] // the one room where the crate's `deny` is lifted
 
-/// What OpenSubdiv refused.
+mod raw;
+mod reference;
+mod refiner;
+
+pub use reference::{Answer, Bfr, Far, Reference, ReferenceJet};
+pub use refiner::{Level, Refiner, Rule};
+
+use crate::mesh::{Boundary, Creasing, MeshError, SubdivMesh};
+use std::ffi::CStr;
+
+/// Deepest isolation of OpenSubdiv 3.5.0: beyond it, patches are silently wrong or memory is corrupted.
+pub const MAX_ISOLATION: u32 = 10;
+
+/// Sharpness from which an edge or vertex is infinitely sharp (`Sdc::Crease::SHARPNESS_INFINITE`).
+pub const INFINITE_SHARPNESS: f32 = 10.0;
+
+/// Why there is no refined topology or no reference evaluator.
 #[derive(Debug, thiserror::Error)]
-#[error("{0}")]
-pub struct Error(pub String);
+pub enum Error {
+    /// The mesh cannot be handed to OpenSubdiv.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// OpenSubdiv reported an error or threw an exception.
+    #[error("OpenSubdiv: {0}")]
+    OpenSubdiv(String),
+}
+
+/// Version of the OpenSubdiv in use.
+pub fn version() -> String {
+    // SAFETY: osd_version returns a static C string.
+    unsafe { CStr::from_ptr(raw::osd_version()) }.to_string_lossy().into_owned()
+}
+
+/// Turns the status of a call made on this thread into a `Result`.
+fn check(status: raw::osd_status) -> Result<(), Error> {
+    if status == raw::OSD_OK {
+        return Ok(());
+    }
+    // SAFETY: osd_message returns a C string that lives until the next call on this thread.
+    let message = unsafe { CStr::from_ptr(raw::osd_message()) };
+    Err(Error::OpenSubdiv(message.to_string_lossy().trim().replace('\n', " ")))
+}
+
+/// A validated mesh in the layout of `osd_mesh`.
+struct Descriptor {
+    face_sizes: Vec<i32>,
+    face_vertices: Vec<i32>,
+    crease_vertices: Vec<i32>,
+    crease_sharpness: Vec<f32>,
+    corner_vertices: Vec<i32>,
+    corner_sharpness: Vec<f32>,
+    holes: Vec<i32>,
+    points: Vec<f64>,
+    boundary: raw::osd_boundary,
+    creasing: raw::osd_creasing,
+}
+
+impl Descriptor {
+    fn new(mesh: &SubdivMesh) -> Result<Self, Error> {
+        mesh.validate()?;
+        let signed = |indices: &[u32]| indices.iter().map(|&i| i as i32).collect();
+        Ok(Self {
+            face_sizes: signed(&mesh.face_sizes),
+            face_vertices: signed(&mesh.face_vertices),
+            crease_vertices: mesh.creases.iter().flat_map(|c| c.vertices.map(|v| v as i32)).collect(),
+            crease_sharpness: mesh.creases.iter().map(|c| c.sharpness).collect(),
+            corner_vertices: mesh.corners.iter().map(|c| c.vertex as i32).collect(),
+            corner_sharpness: mesh.corners.iter().map(|c| c.sharpness).collect(),
+            holes: signed(&mesh.holes),
+            points: mesh.points.iter().flat_map(|p| p.to_array()).collect(),
+            boundary: match mesh.boundary {
+                Boundary::None => raw::OSD_BOUNDARY_NONE,
+                Boundary::EdgeOnly => raw::OSD_BOUNDARY_EDGE_ONLY,
+                Boundary::EdgeAndCorner => raw::OSD_BOUNDARY_EDGE_AND_CORNER,
+            },
+            creasing: match mesh.creasing {
+                Creasing::Uniform => raw::OSD_CREASING_UNIFORM,
+                Creasing::Chaikin => raw::OSD_CREASING_CHAIKIN,
+            },
+        })
+    }
+
+    /// The C view of this mesh; valid while `self` is borrowed.
+    fn as_raw(&self) -> raw::osd_mesh {
+        raw::osd_mesh {
+            vertex_count: (self.points.len() / 3) as i32,
+            face_count: self.face_sizes.len() as i32,
+            face_sizes: self.face_sizes.as_ptr(),
+            face_vertices: self.face_vertices.as_ptr(),
+            crease_count: self.crease_sharpness.len() as i32,
+            crease_vertices: self.crease_vertices.as_ptr(),
+            crease_sharpness: self.crease_sharpness.as_ptr(),
+            corner_count: self.corner_sharpness.len() as i32,
+            corner_vertices: self.corner_vertices.as_ptr(),
+            corner_sharpness: self.corner_sharpness.as_ptr(),
+            hole_count: self.holes.len() as i32,
+            holes: self.holes.as_ptr(),
+            boundary: self.boundary,
+            creasing: self.creasing,
+        }
+    }
+}

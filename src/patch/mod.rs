@@ -1,4 +1,43 @@
-//! What the limit surface is made of: one patch for every leaf of the quadtree over each ptex face.
+//! What the limit surface is made of: one [`Patch`] for every leaf of the quadtree over each ptex face.
+//!
+//! OpenSubdiv refines; this station decides where to stop. A face of any level is a leaf as soon as its limit has a
+//! closed form: all four corners regular (boundaries and infinitely sharp edges included), or one extraordinary vertex
+//! whose rules no longer change and whose spokes are the only features of the other corners. Then a [`RingClass`] says
+//! everything about the patch but its points. Smooth extraordinary vertices, darts, crease and corner sectors all end
+//! at level 2 at the latest; only finite sharpness takes ceil(sharpness) levels.
+
+mod fan;
+mod tree;
+
+pub use tree::PHANTOM;
+pub(crate) use tree::slot;
+
+use crate::mesh::SubdivMesh;
+use crate::osd::{INFINITE_SHARPNESS, MAX_ISOLATION, Refiner};
+
+/// Why the patches of a mesh were not found.
+#[derive(Debug, thiserror::Error)]
+pub enum PatchError {
+    /// OpenSubdiv refused the mesh.
+    #[error(transparent)]
+    Osd(#[from] crate::osd::Error),
+    /// A face has no closed form and OpenSubdiv did not refine it further.
+    #[error("face {face} of level {level} has features that isolation does not resolve: please report this mesh")]
+    NotRefined {
+        /// Refinement level.
+        level: usize,
+        /// Face index in the level.
+        face: usize,
+    },
+    /// OpenSubdiv numbered child faces in an order we do not know.
+    #[error("face {face} of level {level}: unexpected order of its child faces: please report this mesh")]
+    ChildOrder {
+        /// Refinement level.
+        level: usize,
+        /// Face index in the level.
+        face: usize,
+    },
+}
 
 /// What rules apply in a patch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -13,6 +52,22 @@ pub enum PatchKind {
     Crease,
     /// A corner vertex, with other than one face in this sector.
     Corner,
+}
+
+impl PatchKind {
+    /// All kinds, in report order.
+    pub const ALL: [Self; 5] = [Self::Regular, Self::Smooth, Self::Dart, Self::Crease, Self::Corner];
+
+    /// Name in reports and in the `kind` column.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Regular => "regular",
+            Self::Smooth => "smooth",
+            Self::Dart => "dart",
+            Self::Crease => "crease",
+            Self::Corner => "corner",
+        }
+    }
 }
 
 /// One leaf of the quadtree over a ptex face; its own local (u,v) span [0,1]^2.
@@ -30,4 +85,204 @@ pub struct Patch {
     pub kind: PatchKind,
     /// Bit e: the neighbour across local edge e (0: v=0, 1: u=1, 2: v=1, 3: u=0) is split once more.
     pub transition: u8,
+}
+
+impl Patch {
+    /// Patch-local parameters of a point of the ptex face that lies in this patch.
+    pub fn to_local(&self, [u, v]: [f64; 2]) -> [f64; 2] {
+        let scale = f64::from(1u32 << self.depth);
+        let [u, v] = [u * scale - f64::from(self.origin[0]), v * scale - f64::from(self.origin[1])];
+        match self.rotation {
+            0 => [u, v],
+            1 => [v, 1.0 - u],
+            2 => [1.0 - u, 1.0 - v],
+            _ => [1.0 - v, u],
+        }
+    }
+
+    /// Ptex parameters of a patch-local point.
+    pub fn to_ptex(&self, [s, t]: [f64; 2]) -> [f64; 2] {
+        let [u, v] = match self.rotation {
+            0 => [s, t],
+            1 => [1.0 - t, s],
+            2 => [1.0 - s, 1.0 - t],
+            _ => [t, 1.0 - s],
+        };
+        let scale = f64::from(1u32 << self.depth);
+        [(u + f64::from(self.origin[0])) / scale, (v + f64::from(self.origin[1])) / scale]
+    }
+}
+
+/// The rule at the tip of a sector or ring.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Tip {
+    /// The smooth vertex rule (smooth vertices and darts).
+    Smooth,
+    /// The crease rule along the two bounding edges.
+    Crease,
+    /// The vertex stays where it is.
+    Corner,
+}
+
+/// What all irregular patches with the same subdivision matrices share (design.md 3.1).
+///
+/// The faces round the vertex are counted counter-clockwise; face i lies between spoke i and spoke i+1. A closed ring
+/// starts at the patch itself, an open sector at its first sharp or boundary edge.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct RingClass {
+    /// Faces in the ring or sector.
+    pub faces: u16,
+    /// Goes all the way round.
+    pub closed: bool,
+    /// Which face the patch is.
+    pub index: u16,
+    /// Rule at the vertex.
+    pub tip: Tip,
+    /// The infinitely sharp spoke of a dart.
+    pub sharp_spoke: Option<u16>,
+}
+
+impl RingClass {
+    /// Number of spokes.
+    pub fn spokes(&self) -> usize {
+        usize::from(self.faces) + usize::from(!self.closed)
+    }
+
+    /// Whether a spoke is infinitely sharp or a boundary.
+    pub fn is_sharp(&self, spoke: usize) -> bool {
+        match self.closed {
+            true => self.sharp_spoke == Some(spoke as u16),
+            false => spoke == 0 || spoke == usize::from(self.faces),
+        }
+    }
+
+    /// The two spokes of the patch: v = 0 and u = 0.
+    pub fn own_spokes(&self) -> [usize; 2] {
+        let first = usize::from(self.index);
+        [first, (first + 1) % self.spokes()]
+    }
+
+    /// Grid positions of the points outside the ring, in the order in which a support lists them.
+    pub fn outer(&self) -> Vec<(isize, isize)> {
+        let [first, second] = self.own_spokes();
+        let mut points = vec![(2, 0), (2, 1), (2, 2), (1, 2), (0, 2)];
+        if !self.is_sharp(first) {
+            points.push((2, -1));
+        }
+        if !self.is_sharp(second) {
+            points.push((-1, 2));
+        }
+        points
+    }
+
+    /// Number of control points: the vertex, its spokes, the opposite corners of its faces, the outer points (2N+8 for
+    /// a smooth vertex of valence N, as in Stam 1998).
+    pub fn support(&self) -> usize {
+        1 + self.spokes() + usize::from(self.faces) + self.outer().len()
+    }
+}
+
+/// A node of the quadtree over a ptex face.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Node {
+    /// No surface.
+    Hole,
+    /// A patch.
+    Leaf(u32),
+    /// Four children, at corners (0,0), (1,0), (1,1), (0,1).
+    Split(u32),
+}
+
+/// Where the control points of a patch are listed.
+#[derive(Debug, Clone, Copy)]
+struct Support {
+    first: u32,
+    /// Class of an irregular patch.
+    class: Option<u32>,
+}
+
+/// The patches of a mesh and the quadtrees that find them. Topology only: control points may move without it changing.
+#[derive(Debug, Default)]
+pub struct Patches {
+    patches: Vec<Patch>,
+    supports: Vec<Support>,
+    vertices: Vec<u32>,
+    classes: Vec<RingClass>,
+    roots: Vec<Node>,
+    splits: Vec<[Node; 4]>,
+}
+
+impl Patches {
+    /// Refines `mesh` as deep as its finite sharpness asks and collects the patches.
+    ///
+    /// # Errors
+    /// OpenSubdiv refuses the mesh, or a face stays without a closed form.
+    pub fn new(mesh: &SubdivMesh) -> Result<(Self, Refiner), PatchError> {
+        let refiner = Refiner::adaptive(mesh, isolation(mesh), RINGS_STAND_ALONE)?;
+        Ok((tree::build(&refiner)?, refiner))
+    }
+
+    /// All patches, in ptex order.
+    pub fn all(&self) -> &[Patch] {
+        &self.patches
+    }
+
+    /// The classes of the irregular patches.
+    pub fn classes(&self) -> &[RingClass] {
+        &self.classes
+    }
+
+    /// Index into [`classes`](Self::classes) of an irregular patch.
+    pub fn class(&self, patch: usize) -> Option<usize> {
+        self.supports[patch].class.map(|class| class as usize)
+    }
+
+    /// Refined vertices that control a patch: for a regular one the 4x4 net, u fastest, [`PHANTOM`] beyond sharp edges;
+    /// else the support of its class.
+    pub fn support(&self, patch: usize) -> &[u32] {
+        let Support { first, class } = self.supports[patch];
+        let length = class.map_or(16, |class| self.classes[class as usize].support());
+        &self.vertices[first as usize..first as usize + length]
+    }
+
+    /// Number of ptex faces, holes included.
+    pub fn ptex_count(&self) -> usize {
+        self.roots.len()
+    }
+
+    /// The patch at (u,v), each in [0,1], of a ptex face, and the patch-local parameters; `None` in a hole.
+    ///
+    /// # Panics
+    /// `ptex` is not below [`ptex_count`](Self::ptex_count).
+    pub fn locate(&self, ptex: u32, uv: [f64; 2]) -> Option<(usize, [f64; 2])> {
+        let mut node = self.roots[ptex as usize];
+        let [mut u, mut v] = uv;
+        loop {
+            match node {
+                Node::Hole => return None,
+                Node::Leaf(patch) => {
+                    let local = self.patches[patch as usize].to_local(uv);
+                    return Some((patch as usize, local.map(|x| x.clamp(0.0, 1.0))));
+                }
+                Node::Split(children) => {
+                    let [right, up] = [u >= 0.5, v >= 0.5];
+                    let corner = [[0, 3], [1, 2]][usize::from(right)][usize::from(up)];
+                    u = 2.0 * u - f64::from(u8::from(right));
+                    v = 2.0 * v - f64::from(u8::from(up));
+                    node = self.splits[children as usize][corner];
+                }
+            }
+        }
+    }
+}
+
+/// After two levels every face is a quad with at most one extraordinary vertex and no other feature than its spokes.
+const RINGS_STAND_ALONE: u32 = 2;
+
+/// Levels after which no finite sharpness is left: it decreases by one a level (Chaikin averages first, which lowers the
+/// largest).
+fn isolation(mesh: &SubdivMesh) -> u32 {
+    let sharpness = mesh.creases.iter().map(|c| c.sharpness).chain(mesh.corners.iter().map(|c| c.sharpness));
+    let finite = sharpness.filter(|&s| s < INFINITE_SHARPNESS).fold(0.0, f32::max);
+    (finite.ceil() as u32).clamp(RINGS_STAND_ALONE, MAX_ISOLATION)
 }

@@ -1,6 +1,17 @@
 //! The exact limit in f64: the reference of everything else.
+//!
+//! A [`LimitSurface`] holds the patches of a mesh, their control points and the [class tables](ClassTable), and
+//! evaluates position, derivatives and normal anywhere.
 
-use crate::{mesh::SubdivMesh, patch::Patch};
+mod bspline;
+mod class;
+mod matrix;
+mod surface;
+
+pub use class::{ClassTable, LEVELS, WINDOW_POINTS};
+pub use matrix::Matrix;
+pub use surface::{LimitSurface, Net};
+
 use glam::DVec3;
 
 /// Position, first derivatives and unit normal of the limit surface at one point.
@@ -12,48 +23,69 @@ pub struct Jet {
     pub du: DVec3,
     /// Derivative by v.
     pub dv: DVec3,
-    /// Unit normal: the limit of the normals inside the patch (zero where the surface has none).
+    /// Unit normal, the limit of the normals inside the patch; zero where there is none.
     pub normal: DVec3,
 }
 
-/// The control net of a patch, as an evaluator wants it.
-#[derive(Debug, Clone)]
-pub enum Net {
-    /// 16 uniform bicubic B-spline points, u fastest: point (i,j), i,j in -1..=2, at `4*(j+1) + (i+1)`; corners 5, 6, 10, 9.
-    Regular([DVec3; 16]),
-    /// Normalised Stam table, design.md 3.2.
-    Irregular {
-        /// s0, the limit position of the extraordinary vertex at local (0,0).
-        limit: DVec3,
-        /// lambda, the largest eigenvalue of the subdivision matrix below 1.
-        lambda: f64,
-        /// Phat of level n at `levels[n-1]`: 24 points, the grid (a,b), a,b in -1..=3, u fastest, without (-1,-1):
-        /// point (a,b) at `5*(b+1) + (a+1) - 1`.
-        levels: Vec<[DVec3; 24]>,
-    },
+/// Where in a Stam table a patch-local point lies (Yasui & Kanai 2004, section 4.1 and eq. 2).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Window {
+    /// n: the larger of u and v lies in [2^-n, 2^(1-n)).
+    pub level: u32,
+    /// First row of the table that holds the 4x4 net of the window, rows of 5 points.
+    pub first: usize,
+    /// Parameters inside the window.
+    pub t: [f64; 2],
 }
 
-/// The limit surface of a mesh.
-#[derive(Debug)]
-pub struct LimitSurface {}
+impl Window {
+    /// The window at patch-local (u,v), each in [0,1]. At (0,0) it is the inner corner of level `LEVELS`, where the
+    /// table has converged to the tangent plane.
+    pub fn at([u, v]: [f64; 2]) -> Self {
+        let largest = u.max(v);
+        let (level, a, b) = match largest {
+            0.0 => (LEVELS as u32, 1.0, 1.0),
+            // At 1 the window of level 1 ends; below, the exponent of the larger parameter is 1 - n - 1.
+            _ => {
+                let exponent = (largest.to_bits() >> 52) as i32 - 1023;
+                let level = (-exponent).clamp(1, 1000);
+                let scale = 2f64.powi(level);
+                (level as u32, u * scale, v * scale)
+            }
+        };
+        let [i, j] = [a, b].map(|x| usize::from(x >= 1.0));
+        Self { level, first: 5 * j + i, t: [a - i as f64, b - j as f64] }
+    }
 
-impl LimitSurface {
-    /// Refines the mesh and builds its patches and tables.
-    pub fn new(_mesh: &SubdivMesh) -> Result<Self, crate::osd::Error> { todo!() }
-    /// All patches.
-    pub fn patches(&self) -> &[Patch] { todo!() }
-    /// Number of ptex faces (holes included).
-    pub fn ptex_count(&self) -> usize { todo!() }
-    /// Length of the bounding-box diagonal of the control points.
-    pub fn diagonal(&self) -> f64 { todo!() }
-    /// Bounds of the limit surface (a box that encloses it).
-    pub fn bounds(&self) -> [DVec3; 2] { todo!() }
-    /// The patch at (u,v) of a ptex face and the patch-local (u,v); `None` in a hole.
-    pub fn locate(&self, _ptex: u32, _u: f64, _v: f64) -> Option<(usize, [f64; 2])> { todo!() }
-    /// Evaluates a patch at its local (u,v), derivatives by the local parameters.
-    pub fn evaluate(&self, _patch: usize, _uv: [f64; 2]) -> Jet { todo!() }
-    /// Evaluates a ptex face at (u,v), derivatives by the ptex parameters; `None` in a hole.
-    pub fn evaluate_ptex(&self, _ptex: u32, _u: f64, _v: f64) -> Option<(usize, Jet)> { todo!() }
-    /// Control net of a patch, `levels` levels of it where it is irregular.
-    pub fn net(&self, _patch: usize, _levels: usize) -> Net { todo!() }
+    /// Index in the table of point k (u fastest) of the window's 4x4 net. The table leaves out (-1,-1), so it starts
+    /// one early.
+    pub fn point(&self, k: usize) -> usize {
+        self.first + 5 * (k / 4) + k % 4 - 1
+    }
+}
+
+/// The tensor-product weights at parameters inside a window or a regular patch: value, d/du, d/dv for each of the 16
+/// points of the net, u fastest.
+pub fn weights(t: [f64; 2]) -> [[f64; 3]; 16] {
+    bspline::tensor(t[0], t[1])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn windows_cover_the_parameter_square() {
+        let cases = [
+            ([1.0, 0.3], 1, [1.0, 0.6]),
+            ([0.5, 0.25], 1, [0.0, 0.5]),
+            ([0.49, 0.25], 2, [0.96, 0.0]),
+            ([0.1, 0.25], 2, [0.4, 0.0]),
+        ];
+        for (uv, level, t) in cases {
+            let window = Window::at(uv);
+            assert_eq!(window.level, level, "{uv:?}");
+            assert!((window.t[0] - t[0]).abs() + (window.t[1] - t[1]).abs() < 1e-15, "{uv:?}: {window:?}");
+        }
+    }
 }

@@ -1,0 +1,24 @@
+//! Compiles the shim over OpenSubdiv and generates its Rust declarations.
+
+use std::{env, path::PathBuf};
+
+const SHIM: [&str; 2] = ["ffi/refiner.cpp", "ffi/reference.cpp"];
+
+fn main() {
+    for file in SHIM.iter().chain(&["ffi/osd.h", "ffi/guard.hpp", "build.rs"]) {
+        println!("cargo:rerun-if-changed={file}");
+    }
+    cc::Build::new().cpp(true).std("c++14").opt_level(2).warnings(true).files(SHIM).compile("catoptric_osd");
+    // Debian's libosdCPU; the GPU half of OpenSubdiv is not used.
+    println!("cargo:rustc-link-lib=osdCPU");
+
+    let bindings = bindgen::Builder::default()
+        .header("ffi/osd.h")
+        .allowlist_item("(osd|OSD)_.*")
+        .prepend_enum_name(false)
+        .derive_default(true)
+        .generate()
+        .expect("bindgen reads ffi/osd.h (libclang-dev is needed: script/setup installs it)");
+    let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
+    bindings.write_to_file(out.join("osd.rs")).expect("OUT_DIR is writable");
+}

@@ -1,0 +1,125 @@
+/*
+ * The whole C interface between catoptric and OpenSubdiv 3.5.0. bindgen reads this file alone.
+ *
+ * Conventions
+ *  - Every function that can fail returns an osd_status; after OSD_FAILED, osd_message() says why (one line, valid until
+ *    the next call on the same thread). Outputs are unspecified after a failure.
+ *  - Arrays are owned by the caller and sized as stated; points are x, y, z in double precision.
+ *  - Objects made by *_create are owned by the caller and released once by the matching *_destroy (NULL is allowed).
+ *  - The caller validates meshes: OpenSubdiv reads out of bounds on indices that are out of range.
+ */
+#ifndef CATOPTRIC_OSD_H
+#define CATOPTRIC_OSD_H
+
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum osd_status { OSD_OK = 0, OSD_FAILED = 1 } osd_status;
+
+const char *osd_message(void);
+/* Version of the library in use, such as "3.5.0". */
+const char *osd_version(void);
+
+/* ---- control mesh ------------------------------------------------------------------------------------------------ */
+
+typedef enum osd_boundary { OSD_BOUNDARY_NONE, OSD_BOUNDARY_EDGE_ONLY, OSD_BOUNDARY_EDGE_AND_CORNER } osd_boundary;
+typedef enum osd_creasing { OSD_CREASING_UNIFORM, OSD_CREASING_CHAIKIN } osd_creasing;
+
+typedef struct osd_mesh {
+    int32_t vertex_count;
+    int32_t face_count;
+    const int32_t *face_sizes;        /* face_count */
+    const int32_t *face_vertices;     /* sum of face_sizes */
+    int32_t crease_count;
+    const int32_t *crease_vertices;   /* 2 * crease_count */
+    const float *crease_sharpness;    /* crease_count */
+    int32_t corner_count;
+    const int32_t *corner_vertices;   /* corner_count */
+    const float *corner_sharpness;    /* corner_count */
+    int32_t hole_count;
+    const int32_t *holes;             /* hole_count */
+    osd_boundary boundary;
+    osd_creasing creasing;
+} osd_mesh;
+
+/* ---- topology refinement ----------------------------------------------------------------------------------------- */
+
+typedef struct osd_refiner osd_refiner;
+
+/* Copies the mesh; level 0 exists afterwards. */
+osd_status osd_refiner_create(const osd_mesh *mesh, osd_refiner **out);
+void osd_refiner_destroy(osd_refiner *refiner);
+
+/*
+ * Feature-adaptive refinement, infinitely sharp patches on. Features other than semi-sharp ones are isolated to
+ * `secondary` only. isolation in 1..10 (3.5.0 corrupts memory above 10), once per refiner.
+ */
+osd_status osd_refiner_refine_adaptive(osd_refiner *refiner, int32_t isolation, int32_t secondary);
+/* Uniform refinement with full topology in the last level; once per refiner. */
+osd_status osd_refiner_refine_uniform(osd_refiner *refiner, int32_t level);
+
+typedef struct osd_level_sizes {
+    int32_t vertices;
+    int32_t edges;
+    int32_t faces;
+    int32_t face_vertices;            /* sum of the face sizes */
+} osd_level_sizes;
+
+osd_status osd_refiner_level_count(const osd_refiner *refiner, int32_t *out);
+osd_status osd_refiner_level_sizes(const osd_refiner *refiner, int32_t level, osd_level_sizes *out);
+
+typedef enum osd_rule { OSD_RULE_SMOOTH, OSD_RULE_DART, OSD_RULE_CREASE, OSD_RULE_CORNER, OSD_RULE_UNKNOWN } osd_rule;
+
+/* Buffers that osd_refiner_level fills. In the last level, and beyond the refined region, children are -1. */
+typedef struct osd_level_arrays {
+    int32_t *face_offsets;            /* faces + 1: face f has face_vertices[face_offsets[f] .. face_offsets[f+1]] */
+    int32_t *face_vertices;           /* face_vertices */
+    int32_t *face_edges;              /* face_vertices: edge i runs from vertex i to vertex i+1 */
+    int32_t *face_children;           /* face_vertices: the child at vertex i */
+    uint8_t *face_holes;              /* faces: 1 for holes, faces that the boundary rule leaves out included */
+    int32_t *edge_faces;              /* 2 * edges: second is -1 on a boundary, both are -2 where not manifold */
+    float *edge_sharpness;            /* edges: 10 is infinite */
+    float *vertex_sharpness;          /* vertices: 10 is infinite */
+    uint8_t *vertex_rules;            /* vertices: an osd_rule */
+    int32_t *vertex_children;         /* vertices: child vertex in the next level */
+} osd_level_arrays;
+
+osd_status osd_refiner_level(const osd_refiner *refiner, int32_t level, const osd_level_arrays *out);
+
+/* points: 3 * vertices of level 0; out: 3 * vertices of levels 0, 1, ... one after the other. */
+osd_status osd_refiner_interpolate(const osd_refiner *refiner, const double *points, double *out);
+/* Limit positions by OpenSubdiv's masks. points and out: 3 * vertices of the last level (uniform refinement). */
+osd_status osd_refiner_limit(const osd_refiner *refiner, const double *points, double *out);
+
+/* ---- reference evaluators ---------------------------------------------------------------------------------------- */
+
+/* What answered: nothing (a hole), an exact B-spline patch, or an approximating end cap. */
+typedef enum osd_answer { OSD_ANSWER_NONE, OSD_ANSWER_REGULAR, OSD_ANSWER_END_CAP } osd_answer;
+
+/* Far::PatchTable in double precision, Gregory end caps; isolation in 1..10. */
+typedef struct osd_far osd_far;
+osd_status osd_far_create(const osd_mesh *mesh, const double *points, int32_t isolation, osd_far **out);
+void osd_far_destroy(osd_far *far);
+
+/* Bfr surfaces in double precision; approximation levels in 1..10 (the library's defaults are 2 and 6). */
+typedef struct osd_bfr osd_bfr;
+osd_status osd_bfr_create(const osd_mesh *mesh, const double *points, int32_t smooth_level, int32_t sharp_level,
+                          osd_bfr **out);
+void osd_bfr_destroy(osd_bfr *bfr);
+
+/*
+ * Evaluates `count` samples. faces: ptex faces; uv: 2 * count, in [0,1]; jets: 9 * count, position, d/du, d/dv by the
+ * parameters of the ptex face; answers: count, an osd_answer each. Neither function is thread-safe on one object.
+ */
+osd_status osd_far_evaluate(osd_far *far, int32_t count, const int32_t *faces, const double *uv, double *jets,
+                            uint8_t *answers);
+osd_status osd_bfr_evaluate(osd_bfr *bfr, int32_t count, const int32_t *faces, const double *uv, double *jets,
+                            uint8_t *answers);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

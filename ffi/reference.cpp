@@ -1,0 +1,159 @@
+// The reference evaluators: osd_far_* (Far::PatchTable) and osd_bfr_* (Bfr surfaces).
+#include "guard.hpp"
+
+#include <opensubdiv/bfr/refinerSurfaceFactory.h>
+#include <opensubdiv/bfr/surface.h>
+#include <opensubdiv/far/patchMap.h>
+#include <opensubdiv/far/patchTable.h>
+#include <opensubdiv/far/patchTableFactory.h>
+
+#include <algorithm>
+
+using namespace catoptric;
+namespace Bfr = OpenSubdiv::Bfr;
+
+struct osd_far {
+    std::unique_ptr<Far::PatchTable> table;
+    std::unique_ptr<Far::PatchMap> map;
+    std::vector<Point> points; // refined, then local
+};
+
+struct osd_bfr {
+    using Factory = Bfr::RefinerSurfaceFactory<>;
+    std::unique_ptr<Far::TopologyRefiner> refiner;
+    std::unique_ptr<Factory> factory;
+    std::vector<double> mesh_points;
+    struct Ptex {
+        int face, sub_face; // sub_face is -1 for a quad
+    };
+    std::vector<Ptex> ptex;
+
+    // The surface of the last face asked for: samples come grouped by face.
+    int face = -1;
+    Bfr::Surface<double> surface;
+    std::vector<double> patch_points;
+};
+
+extern "C" {
+
+osd_status osd_far_create(const osd_mesh *mesh, const double *points, int32_t isolation, osd_far **out) {
+    return guard([&] {
+        require(isolation >= 1 && isolation <= 10, "isolation must be 1 to 10");
+        auto refiner = make_refiner(*mesh);
+
+        Far::PatchTableFactory::Options options(isolation);
+        options.SetPatchPrecision<double>();
+        options.SetEndCapType(Far::PatchTableFactory::Options::ENDCAP_GREGORY_BASIS);
+        options.useInfSharpPatch = true;                  // the default smooths creases
+        options.generateLegacySharpCornerPatches = false; // the default moves smooth corners
+        options.useSingleCreasePatch = false;             // drawing only
+        options.generateVaryingTables = false;
+        refiner->RefineAdaptive(options.GetRefineAdaptiveOptions());
+
+        auto far = std::make_unique<osd_far>();
+        far->table.reset(Far::PatchTableFactory::Create(*refiner, options));
+        if (!far->table) throw std::runtime_error("OpenSubdiv made no patch table");
+        far->map = std::make_unique<Far::PatchMap>(*far->table);
+
+        int const refined = refiner->GetNumVerticesTotal();
+        far->points.resize(refined + far->table->GetNumLocalPoints());
+        interpolate(*refiner, points, far->points.data());
+        if (far->table->GetNumLocalPoints() > 0) {
+            Point const *source = far->points.data();
+            Point *local = far->points.data() + refined;
+            far->table->GetLocalPointStencilTable<double>()->UpdateValues(source, local);
+        }
+        *out = far.release();
+    });
+}
+
+void osd_far_destroy(osd_far *far) { delete far; }
+
+osd_status osd_far_evaluate(osd_far *far, int32_t count, const int32_t *faces, const double *uv, double *jets,
+                            uint8_t *answers) {
+    return guard([&] {
+        std::vector<double> p, du, dv;
+        for (int32_t i = 0; i < count; ++i, jets += 9) {
+            std::fill_n(jets, 9, 0.0);
+            double const u = uv[2 * i], v = uv[2 * i + 1];
+            Far::PatchTable::PatchHandle const *handle = far->map->FindPatch(faces[i], u, v);
+            if (!handle) {
+                answers[i] = OSD_ANSWER_NONE;
+                continue;
+            }
+            auto const vertices = far->table->GetPatchVertices(*handle);
+            p.resize(vertices.size()), du.resize(vertices.size()), dv.resize(vertices.size());
+            far->table->EvaluateBasis<double>(*handle, u, v, p.data(), du.data(), dv.data());
+            // The parameters of an n-gon's quadrants count from the n-gon: the derivatives come back doubled.
+            double const scale = far->table->GetPatchParam(*handle).NonQuadRoot() ? 0.5 : 1.0;
+            for (int j = 0; j < vertices.size(); ++j)
+                for (int k = 0; k < 3; ++k) {
+                    double const x = far->points[vertices[j]].x[k];
+                    jets[k] += p[j] * x;
+                    jets[3 + k] += scale * du[j] * x;
+                    jets[6 + k] += scale * dv[j] * x;
+                }
+            bool const regular = far->table->GetPatchDescriptor(*handle).GetType() == Far::PatchDescriptor::REGULAR;
+            answers[i] = regular ? OSD_ANSWER_REGULAR : OSD_ANSWER_END_CAP;
+        }
+    });
+}
+
+osd_status osd_bfr_create(const osd_mesh *mesh, const double *points, int32_t smooth_level, int32_t sharp_level,
+                          osd_bfr **out) {
+    return guard([&] {
+        require(smooth_level >= 1 && smooth_level <= 10 && sharp_level >= 1 && sharp_level <= 10,
+                "approximation levels must be 1 to 10");
+        auto bfr = std::make_unique<osd_bfr>();
+        bfr->refiner = make_refiner(*mesh);
+        osd_bfr::Factory::Options options;
+        options.SetApproxLevelSmooth(smooth_level);
+        options.SetApproxLevelSharp(sharp_level);
+        bfr->factory = std::make_unique<osd_bfr::Factory>(*bfr->refiner, options);
+        bfr->mesh_points.assign(points, points + 3 * mesh->vertex_count);
+        for (int face = 0; face < mesh->face_count; ++face) {
+            int const size = mesh->face_sizes[face];
+            if (size == 4) bfr->ptex.push_back({face, -1});
+            else
+                for (int corner = 0; corner < size; ++corner) bfr->ptex.push_back({face, corner});
+        }
+        *out = bfr.release();
+    });
+}
+
+void osd_bfr_destroy(osd_bfr *bfr) { delete bfr; }
+
+osd_status osd_bfr_evaluate(osd_bfr *bfr, int32_t count, const int32_t *faces, const double *uv, double *jets,
+                            uint8_t *answers) {
+    return guard([&] {
+        for (int32_t i = 0; i < count; ++i, jets += 9) {
+            std::fill_n(jets, 9, 0.0);
+            require(faces[i] >= 0 && faces[i] < int32_t(bfr->ptex.size()), "ptex face out of range");
+            osd_bfr::Ptex const ptex = bfr->ptex[faces[i]];
+            if (ptex.face != bfr->face) {
+                bfr->face = ptex.face;
+                if (!bfr->factory->InitVertexSurface(ptex.face, &bfr->surface)) bfr->surface.Clear();
+                if (bfr->surface.IsValid()) {
+                    bfr->patch_points.resize(3 * bfr->surface.GetNumPatchPoints());
+                    bfr->surface.PreparePatchPoints(bfr->mesh_points.data(), 3, bfr->patch_points.data(), 3);
+                }
+            }
+            if (!bfr->surface.IsValid()) {
+                answers[i] = OSD_ANSWER_NONE;
+                continue;
+            }
+            double coordinate[2] = {uv[2 * i], uv[2 * i + 1]};
+            double scale = 1.0;
+            if (ptex.sub_face >= 0) {
+                double const sub[2] = {coordinate[0], coordinate[1]};
+                bfr->surface.GetParameterization().ConvertNormalizedSubFaceToCoord(ptex.sub_face, sub, coordinate);
+                scale = 0.5; // a sub-face spans half a unit of the face's parameters
+            }
+            bfr->surface.Evaluate(coordinate, bfr->patch_points.data(), 3, jets, jets + 3, jets + 6);
+            for (int k = 3; k < 9; ++k) jets[k] *= scale;
+            answers[i] = bfr->surface.IsRegular() ? OSD_ANSWER_REGULAR : OSD_ANSWER_END_CAP;
+        }
+    });
+}
+
+} // extern "C"

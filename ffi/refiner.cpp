@@ -1,0 +1,192 @@
+// Topology refinement: osd_refiner_*.
+#include "guard.hpp"
+
+#include <opensubdiv/far/primvarRefiner.h>
+
+#include <algorithm>
+
+namespace catoptric {
+
+std::string &message() {
+    thread_local std::string text;
+    return text;
+}
+
+void install_callbacks() {
+    static std::once_flag once;
+    std::call_once(once, [] {
+        // The callbacks take no user data, so the message goes to the thread that made the call.
+        Far::SetErrorCallback([](Far::ErrorType, char const *text) { message() = text; });
+        Far::SetWarningCallback([](char const *) {});
+    });
+}
+
+std::unique_ptr<Far::TopologyRefiner> make_refiner(osd_mesh const &mesh) {
+    Sdc::Options rules;
+    switch (mesh.boundary) {
+    case OSD_BOUNDARY_NONE: rules.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_NONE); break;
+    case OSD_BOUNDARY_EDGE_ONLY: rules.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY); break;
+    case OSD_BOUNDARY_EDGE_AND_CORNER:
+        rules.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
+        break;
+    }
+    switch (mesh.creasing) {
+    case OSD_CREASING_UNIFORM: rules.SetCreasingMethod(Sdc::Options::CREASE_UNIFORM); break;
+    case OSD_CREASING_CHAIKIN: rules.SetCreasingMethod(Sdc::Options::CREASE_CHAIKIN); break;
+    }
+
+    Far::TopologyDescriptor topology;
+    topology.numVertices = mesh.vertex_count;
+    topology.numFaces = mesh.face_count;
+    topology.numVertsPerFace = mesh.face_sizes;
+    topology.vertIndicesPerFace = mesh.face_vertices;
+    topology.numCreases = mesh.crease_count;
+    topology.creaseVertexIndexPairs = mesh.crease_vertices;
+    topology.creaseWeights = mesh.crease_sharpness;
+    topology.numCorners = mesh.corner_count;
+    topology.cornerVertexIndices = mesh.corner_vertices;
+    topology.cornerWeights = mesh.corner_sharpness;
+    topology.numHoles = mesh.hole_count;
+    topology.holeIndices = mesh.holes;
+
+    using Factory = Far::TopologyRefinerFactory<Far::TopologyDescriptor>;
+    std::unique_ptr<Far::TopologyRefiner> refiner(
+        Factory::Create(topology, Factory::Options(Sdc::SCHEME_CATMARK, rules)));
+    if (!refiner && message().empty()) message() = "OpenSubdiv refused the topology without a reason";
+    if (!refiner) throw std::runtime_error(std::string(message()));
+    return refiner;
+}
+
+void interpolate(Far::TopologyRefiner const &refiner, double const *points, Point *out) {
+    std::memcpy(out, points, sizeof(Point) * refiner.GetLevel(0).GetNumVertices());
+    Far::PrimvarRefinerReal<double> const primvar(refiner);
+    for (int i = 1; i < refiner.GetNumLevels(); ++i) {
+        Point *next = out + refiner.GetLevel(i - 1).GetNumVertices();
+        primvar.Interpolate(i, out, next);
+        out = next;
+    }
+}
+
+} // namespace catoptric
+
+using namespace catoptric;
+
+struct osd_refiner {
+    std::unique_ptr<Far::TopologyRefiner> refiner;
+};
+
+namespace {
+
+Far::TopologyLevel level_at(osd_refiner const *handle, int32_t level) {
+    require(level >= 0 && level < handle->refiner->GetNumLevels(), "level out of range");
+    return handle->refiner->GetLevel(level);
+}
+
+uint8_t rule_of(Sdc::Crease::Rule rule) {
+    switch (rule) {
+    case Sdc::Crease::RULE_SMOOTH: return OSD_RULE_SMOOTH;
+    case Sdc::Crease::RULE_DART: return OSD_RULE_DART;
+    case Sdc::Crease::RULE_CREASE: return OSD_RULE_CREASE;
+    case Sdc::Crease::RULE_CORNER: return OSD_RULE_CORNER;
+    default: return OSD_RULE_UNKNOWN;
+    }
+}
+
+} // namespace
+
+extern "C" {
+
+const char *osd_message(void) { return message().c_str(); }
+
+const char *osd_version(void) { return "3.5.0"; }
+
+osd_status osd_refiner_create(const osd_mesh *mesh, osd_refiner **out) {
+    return guard([&] { *out = new osd_refiner{make_refiner(*mesh)}; });
+}
+
+void osd_refiner_destroy(osd_refiner *refiner) { delete refiner; }
+
+osd_status osd_refiner_refine_adaptive(osd_refiner *handle, int32_t isolation, int32_t secondary) {
+    return guard([&] {
+        require(isolation >= 1 && isolation <= 10, "isolation must be 1 to 10");
+        require(secondary >= 0 && secondary <= 10, "secondary isolation must be 0 to 10");
+        require(handle->refiner->GetMaxLevel() == 0, "the mesh is refined already");
+        Far::TopologyRefiner::AdaptiveOptions options(isolation);
+        options.SetSecondaryLevel(secondary);
+        options.useInfSharpPatch = true;
+        options.useSingleCreasePatch = false;
+        handle->refiner->RefineAdaptive(options);
+    });
+}
+
+osd_status osd_refiner_refine_uniform(osd_refiner *handle, int32_t level) {
+    return guard([&] {
+        require(level >= 1 && level <= 10, "the refinement level must be 1 to 10");
+        require(handle->refiner->GetMaxLevel() == 0, "the mesh is refined already");
+        Far::TopologyRefiner::UniformOptions options(level);
+        options.fullTopologyInLastLevel = true;
+        handle->refiner->RefineUniform(options);
+    });
+}
+
+osd_status osd_refiner_level_count(const osd_refiner *handle, int32_t *out) {
+    return guard([&] { *out = handle->refiner->GetNumLevels(); });
+}
+
+osd_status osd_refiner_level_sizes(const osd_refiner *handle, int32_t level, osd_level_sizes *out) {
+    return guard([&] {
+        Far::TopologyLevel const topology = level_at(handle, level);
+        *out = {topology.GetNumVertices(), topology.GetNumEdges(), topology.GetNumFaces(),
+                topology.GetNumFaceVertices()};
+    });
+}
+
+osd_status osd_refiner_level(const osd_refiner *handle, int32_t level, const osd_level_arrays *out) {
+    return guard([&] {
+        Far::TopologyLevel const topology = level_at(handle, level);
+        bool const has_children = level + 1 < handle->refiner->GetNumLevels();
+        int32_t offset = 0;
+        for (int f = 0; f < topology.GetNumFaces(); ++f) {
+            auto const vertices = topology.GetFaceVertices(f);
+            auto const edges = topology.GetFaceEdges(f);
+            out->face_offsets[f] = offset;
+            out->face_holes[f] = topology.IsFaceHole(f);
+            std::copy(vertices.begin(), vertices.end(), out->face_vertices + offset);
+            std::copy(edges.begin(), edges.end(), out->face_edges + offset);
+            std::fill_n(out->face_children + offset, vertices.size(), -1);
+            if (has_children) {
+                auto const children = topology.GetFaceChildFaces(f);
+                std::copy(children.begin(), children.end(), out->face_children + offset);
+            }
+            offset += vertices.size();
+        }
+        out->face_offsets[topology.GetNumFaces()] = offset;
+        for (int e = 0; e < topology.GetNumEdges(); ++e) {
+            auto const faces = topology.GetEdgeFaces(e);
+            bool const manifold = !topology.IsEdgeNonManifold(e) && faces.size() <= 2;
+            out->edge_faces[2 * e] = !manifold ? -2 : faces.size() > 0 ? faces[0] : -1;
+            out->edge_faces[2 * e + 1] = !manifold ? -2 : faces.size() > 1 ? faces[1] : -1;
+            out->edge_sharpness[e] = topology.GetEdgeSharpness(e);
+        }
+        for (int v = 0; v < topology.GetNumVertices(); ++v) {
+            out->vertex_sharpness[v] = topology.GetVertexSharpness(v);
+            out->vertex_rules[v] = rule_of(topology.GetVertexRule(v));
+            out->vertex_children[v] = has_children ? topology.GetVertexChildVertex(v) : -1;
+        }
+    });
+}
+
+osd_status osd_refiner_interpolate(const osd_refiner *handle, const double *points, double *out) {
+    return guard([&] { interpolate(*handle->refiner, points, reinterpret_cast<Point *>(out)); });
+}
+
+osd_status osd_refiner_limit(const osd_refiner *handle, const double *points, double *out) {
+    return guard([&] {
+        Far::PrimvarRefinerReal<double> const primvar(*handle->refiner);
+        Point const *source = reinterpret_cast<Point const *>(points);
+        Point *limit = reinterpret_cast<Point *>(out);
+        primvar.Limit(source, limit);
+    });
+}
+
+} // extern "C"

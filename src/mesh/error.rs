@@ -1,0 +1,195 @@
+//! What can be wrong with a mesh, and the one line that says so.
+
+use std::fmt;
+use std::io;
+use std::path::Path;
+
+use thiserror::Error;
+
+use super::validate::{MAX_COORDINATE, MAX_VALENCE};
+
+/// Longest piece of the input that a message quotes, in characters.
+const QUOTE_LENGTH: usize = 40;
+
+/// Where in the input something is: a file and line, or a mesh and one of its parts.
+///
+/// Shown as `panel.obj:12`, or `panel, face 3` for a mesh that came from no file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Place {
+    /// Path of the file, or name of the mesh.
+    pub source: String,
+    /// Where in the source.
+    pub spot: Spot,
+}
+
+/// The spot within a file or mesh that a [`Place`] names.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Spot {
+    /// The source as a whole.
+    Whole,
+    /// A line of a file, counted from 1.
+    Line(u32),
+    /// A part of a mesh (`face`, `vertex`, `crease`, `corner` or `hole`) and its index, counted from 0.
+    Part(&'static str, usize),
+}
+
+impl Place {
+    /// The whole file.
+    pub(super) fn file(path: &Path) -> Self {
+        Self { source: path.display().to_string(), spot: Spot::Whole }
+    }
+
+    /// Another spot in the same source.
+    pub(super) fn with(source: &str, spot: Spot) -> Self {
+        Self { source: source.to_owned(), spot }
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // A path may hold a line break; a message is one line.
+        for c in self.source.chars() {
+            if c.is_control() {
+                write!(f, "{}", c.escape_default())?;
+            } else {
+                write!(f, "{c}")?;
+            }
+        }
+        match self.spot {
+            Spot::Whole => Ok(()),
+            Spot::Line(line) => write!(f, ":{line}"),
+            Spot::Part(part, index) => write!(f, ", {part} {index}"),
+        }
+    }
+}
+
+impl fmt::Display for Spot {
+    /// The spot alone, for a message that has named the source already.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Whole => write!(f, "the whole"),
+            Self::Line(line) => write!(f, "line {line}"),
+            Self::Part(part, index) => write!(f, "{part} {index}"),
+        }
+    }
+}
+
+/// A piece of the input as a message quotes it: printable, and no longer than a message can bear.
+pub(super) fn quote(token: &[u8]) -> String {
+    let text = String::from_utf8_lossy(&token[..token.len().min(4 * QUOTE_LENGTH)]);
+    let mut quoted: String = text
+        .chars()
+        .take(QUOTE_LENGTH)
+        .flat_map(|c| {
+            let escaped = c.is_control().then(|| c.escape_default());
+            let plain = (!c.is_control()).then_some(c);
+            escaped.into_iter().flatten().chain(plain)
+        })
+        .collect();
+    if text.chars().count() > QUOTE_LENGTH || token.len() > 4 * QUOTE_LENGTH {
+        quoted.push_str("...");
+    }
+    quoted
+}
+
+/// Why a mesh is refused. Displays as one line: `where: what; what to do`.
+///
+/// Vertex numbers of faces are the file's own (an OBJ counts from 1); indices in tags and in meshes that came from no
+/// file count from 0.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "each message says what its variant and its fields are")]
+pub enum MeshError {
+    #[error("{at}: no such file; check the path")]
+    NotFound { at: Place },
+    #[error("{at}: cannot be read ({error}); give a file that you may read")]
+    Unreadable { at: Place, error: io::Error },
+    #[error("{at}: only .obj is read so far; export the mesh as OBJ")]
+    UnsupportedFormat { at: Place },
+    #[error("{at}: the file is empty; export the mesh again")]
+    EmptyFile { at: Place },
+    #[error("{at}: a NUL byte, so this is not text; give an OBJ in ASCII or UTF-8")]
+    NotText { at: Place },
+
+    #[error("{at}: '{found}' is not {expected}; correct it")]
+    NotANumber { at: Place, found: String, expected: &'static str },
+    #[error("{at}: a vertex with {found} of 3 coordinates; write v x y z")]
+    MissingCoordinates { at: Place, found: usize },
+    #[error("{at}: a face with vertex 0; OBJ counts vertices from 1")]
+    VertexZero { at: Place },
+    #[error(
+        "{at}: a face with vertex {index}, but only {defined} vertices stand before it; \
+         -1 is the latest, use -{defined} to -1"
+    )]
+    VertexBeforeStart { at: Place, index: i64, defined: usize },
+
+    #[error("{at}: the mesh has no vertices; give a mesh with polygons")]
+    NoVertices { at: Place },
+    #[error("{at}: the mesh has no faces; give a mesh with polygons, not points or curves alone")]
+    NoFaces { at: Place },
+    #[error(
+        "{at}: {count} {what}, but OpenSubdiv's indices end at {limit}; split the mesh",
+        limit = i32::MAX
+    )]
+    TooMany { at: Place, what: &'static str, count: usize },
+    #[error(
+        "{at}: the face sizes add up to {expected}, but there are {found} face vertices; \
+         make both agree"
+    )]
+    FaceSizesDisagree { at: Place, expected: u64, found: usize },
+
+    #[error("{at}: coordinate {value} is not finite; correct the vertex")]
+    CoordinateNotFinite { at: Place, value: f64 },
+    #[error(
+        "{at}: coordinate {value:e} is larger than {MAX_COORDINATE:e}, \
+         where squares overflow; scale the mesh down"
+    )]
+    CoordinateTooLarge { at: Place, value: f64 },
+
+    #[error("{at}: a face with {size} vertices; a face needs at least 3")]
+    FaceTooSmall { at: Place, size: usize },
+    #[error("{at}: a face with {size} vertices, but OpenSubdiv takes at most {MAX_VALENCE}; split it")]
+    FaceTooLarge { at: Place, size: usize },
+    #[error("{at}: a face with vertex {vertex}, but the mesh has only {first} to {last}; correct it")]
+    VertexOutOfRange { at: Place, vertex: u64, first: u64, last: u64 },
+    #[error("{at}: a face with vertex {vertex} twice; name each vertex of a face once")]
+    RepeatedVertex { at: Place, vertex: u64 },
+    #[error("{at}: the same face as {original}; delete one of the two")]
+    DuplicateFace { at: Place, original: Spot },
+    #[error(
+        "{at}: {valence} edges meet at this vertex, but OpenSubdiv takes at most {MAX_VALENCE}; \
+         split the vertex"
+    )]
+    ValenceTooHigh { at: Place, valence: usize },
+
+    #[error("{at}: sharpness {value} is not finite; use 0 (smooth) to 10 (infinitely sharp)")]
+    SharpnessNotFinite { at: Place, value: f32 },
+    #[error("{at}: sharpness {value} is negative; use 0 (smooth) to 10 (infinitely sharp)")]
+    SharpnessNegative { at: Place, value: f32 },
+    #[error("{at}: a crease with vertex {vertex}, but the mesh has only 0 to {last}; tags count from 0")]
+    CreaseOutOfRange { at: Place, vertex: u32, last: u64 },
+    #[error("{at}: a crease from vertex {vertex} to itself; name the two ends of an edge")]
+    CreaseOnOneVertex { at: Place, vertex: u32 },
+    #[error("{at}: a crease from vertex {} to {}, but no face has that edge; tags count from 0", .vertices[0], .vertices[1])]
+    CreaseWithoutEdge { at: Place, vertices: [u32; 2] },
+    #[error("{at}: a corner at vertex {vertex}, but the mesh has only 0 to {last}; tags count from 0")]
+    CornerOutOfRange { at: Place, vertex: u32, last: u64 },
+    #[error("{at}: a hole at face {face}, but the mesh has only 0 to {last}; tags count from 0")]
+    HoleOutOfRange { at: Place, face: u32, last: u64 },
+
+    #[error(
+        "{at}: a tag without a name and counts; \
+         write t NAME INTS/FLOATS/STRINGS and then as many values"
+    )]
+    TagWithoutHeader { at: Place },
+    #[error("{at}: tag '{name}' is unknown; use crease, corner, hole, interpolateboundary or creasemethod")]
+    UnknownTag { at: Place, name: String },
+    #[error("{at}: the {name} tag announces {announced} values and has {found}; correct its counts")]
+    TagCountMismatch { at: Place, name: String, announced: usize, found: usize },
+    #[error("{at}: the {name} tag has {ints} ints, {floats} floats and {strings} strings; it takes {expected}")]
+    TagShape { at: Place, name: &'static str, ints: usize, floats: usize, strings: usize, expected: &'static str },
+    #[error("{at}: the {name} tag has index {index}; use 0 to {limit}", limit = i32::MAX)]
+    TagIndex { at: Place, name: &'static str, index: i64 },
+    #[error("{at}: {name} '{value}' is not supported; use {expected}")]
+    TagValue { at: Place, name: &'static str, value: String, expected: &'static str },
+}

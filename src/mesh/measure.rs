@@ -1,0 +1,53 @@
+//! Counts, faces and extent of a mesh.
+
+use glam::DVec3;
+
+use super::SubdivMesh;
+
+impl SubdivMesh {
+    /// Number of faces, holes included.
+    pub fn face_count(&self) -> usize {
+        self.face_sizes.len()
+    }
+
+    /// Number of control points, those that no face uses included.
+    pub fn vertex_count(&self) -> usize {
+        self.points.len()
+    }
+
+    /// Faces in order: index and vertices.
+    ///
+    /// Ends early if `face_sizes` asks for more vertices than there are, which [`validate`](Self::validate) refuses.
+    pub fn faces(&self) -> impl Iterator<Item = (usize, &[u32])> {
+        let mut rest = self.face_vertices.as_slice();
+        self.face_sizes.iter().enumerate().map_while(move |(face, &size)| {
+            let (vertices, tail) = rest.split_at_checked(size as usize)?;
+            rest = tail;
+            Some((face, vertices))
+        })
+    }
+
+    /// Smallest and largest coordinates of the control points that faces use; `None` if there are no faces.
+    ///
+    /// # Panics
+    /// If a face names a vertex that is not there, which [`validate`](Self::validate) refuses.
+    pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
+        let mut used = self.face_vertices.iter().map(|&v| self.points[v as usize]);
+        let first = used.next()?;
+        Some(used.fold((first, first), |(low, high), p| (low.min(p), high.max(p))))
+    }
+
+    /// Length of the diagonal of [`bounds`](Self::bounds), the unit of all position errors; 0 if there are no faces.
+    ///
+    /// # Panics
+    /// As [`bounds`](Self::bounds).
+    pub fn diagonal(&self) -> f64 {
+        self.bounds().map_or(0.0, |(low, high)| low.distance(high))
+    }
+
+    /// The same mesh moved by `offset`.
+    #[must_use]
+    pub fn translated(&self, offset: DVec3) -> Self {
+        Self { points: self.points.iter().map(|&p| p + offset).collect(), ..self.clone() }
+    }
+}

@@ -1,0 +1,332 @@
+//! Everything that OpenSubdiv 3.5.0 does not survive, or takes without a word, is refused here.
+//!
+//! One pass over each array, plus a sort of the faces (for duplicates) and of the creases (for their edges): a million
+//! faces take a fraction of a second.
+//!
+//! # What is legal
+//! * Non-manifold edges and vertices, unused vertices, several components, coincident points, all faces being holes.
+//! * A face and its mirror image (the same vertices in reverse): a closed pillow of two sides, where each edge has its
+//!   two faces. The same cyclic order twice is refused: it is one face counted twice, and the second copy would lie on
+//!   the first and turn its edges non-manifold.
+//! * The same edge or vertex sharpened more than once: the last one counts.
+
+use super::SubdivMesh;
+use super::error::{MeshError, Place, Spot};
+
+/// Largest number of edges at a vertex, and of vertices in a face: OpenSubdiv's `Vtr::VALENCE_LIMIT` (16-bit local
+/// indices).
+pub const MAX_VALENCE: usize = 65_535;
+
+/// Largest coordinate, in the units of the file: squared lengths still fit into an f32 (1e36 of 3.4e38).
+pub const MAX_COORDINATE: f64 = 1e18;
+
+/// Lines of the file that the parts of a mesh come from, parallel to the mesh's own arrays.
+#[derive(Debug, Default)]
+pub(super) struct Lines {
+    pub(super) vertices: Vec<u32>,
+    pub(super) faces: Vec<u32>,
+    pub(super) creases: Vec<u32>,
+    pub(super) corners: Vec<u32>,
+    pub(super) holes: Vec<u32>,
+}
+
+/// How the messages about a mesh name its parts.
+pub(super) struct Source<'a> {
+    /// Path of the file, or name of the mesh.
+    pub(super) name: &'a str,
+    /// Lines of the parts, if they come from a file.
+    pub(super) lines: Option<&'a Lines>,
+    /// Number of the first vertex in the faces of the source: 1 in an OBJ, else 0.
+    pub(super) first_vertex: u64,
+}
+
+/// A part of a mesh that can be the offender.
+#[derive(Clone, Copy)]
+enum Part {
+    Vertex(usize),
+    Face(usize),
+    Crease(usize),
+    Corner(usize),
+    Hole(usize),
+}
+
+impl Source<'_> {
+    fn whole(&self) -> Place {
+        Place::with(self.name, Spot::Whole)
+    }
+
+    fn spot(&self, part: Part) -> Spot {
+        let none = Lines::default();
+        let lines = self.lines.unwrap_or(&none);
+        let (table, name, index) = match part {
+            Part::Vertex(i) => (&lines.vertices, "vertex", i),
+            Part::Face(i) => (&lines.faces, "face", i),
+            Part::Crease(i) => (&lines.creases, "crease", i),
+            Part::Corner(i) => (&lines.corners, "corner", i),
+            Part::Hole(i) => (&lines.holes, "hole", i),
+        };
+        table.get(index).map_or(Spot::Part(name, index), |&line| Spot::Line(line))
+    }
+
+    fn place(&self, part: Part) -> Place {
+        Place::with(self.name, self.spot(part))
+    }
+}
+
+impl SubdivMesh {
+    /// Checks that OpenSubdiv can take this mesh, and that it says what it means.
+    ///
+    /// # Errors
+    /// The first offender of the first check that fails; its place is the mesh's name and the part's index.
+    pub fn validate(&self) -> Result<(), MeshError> {
+        check(self, &Source { name: &self.name, lines: None, first_vertex: 0 })
+    }
+}
+
+/// As [`SubdivMesh::validate`], with places as the source names them.
+pub(super) fn check(mesh: &SubdivMesh, source: &Source<'_>) -> Result<(), MeshError> {
+    check_counts(mesh, source)?;
+    check_points(mesh, source)?;
+    check_faces(mesh, source)?;
+    check_duplicates(mesh, source)?;
+    check_sharpness(mesh, source)?;
+    check_creased_edges(mesh, source)?;
+    check_holes(mesh, source)
+}
+
+fn check_counts(mesh: &SubdivMesh, source: &Source<'_>) -> Result<(), MeshError> {
+    let at = source.whole();
+    if mesh.points.is_empty() {
+        return Err(MeshError::NoVertices { at });
+    }
+    if mesh.face_sizes.is_empty() {
+        return Err(MeshError::NoFaces { at });
+    }
+    check_limit("vertices", mesh.points.len(), &at)?;
+    check_limit("face vertices", mesh.face_vertices.len(), &at)?;
+    let expected = mesh.face_sizes.iter().map(|&n| u64::from(n)).sum();
+    let found = mesh.face_vertices.len();
+    if expected != found as u64 {
+        return Err(MeshError::FaceSizesDisagree { at, expected, found });
+    }
+    Ok(())
+}
+
+/// OpenSubdiv counts in `int`.
+fn check_limit(what: &'static str, count: usize, at: &Place) -> Result<(), MeshError> {
+    if i32::try_from(count).is_err() {
+        let at = at.clone();
+        return Err(MeshError::TooMany { at, what, count });
+    }
+    Ok(())
+}
+
+fn check_points(mesh: &SubdivMesh, source: &Source<'_>) -> Result<(), MeshError> {
+    for (i, point) in mesh.points.iter().enumerate() {
+        for value in point.to_array() {
+            let at = || source.place(Part::Vertex(i));
+            if !value.is_finite() {
+                return Err(MeshError::CoordinateNotFinite { at: at(), value });
+            }
+            if value.abs() > MAX_COORDINATE {
+                return Err(MeshError::CoordinateTooLarge { at: at(), value });
+            }
+        }
+    }
+    Ok(())
+}
+
+fn check_faces(mesh: &SubdivMesh, source: &Source<'_>) -> Result<(), MeshError> {
+    let count = mesh.points.len();
+    let first = source.first_vertex;
+    // The face that used a vertex last, plus one: finds a repetition without comparing all pairs.
+    let mut last_face = vec![0_u32; count];
+    let mut faces_at = vec![0_u32; count];
+    let mut stamp = 0_u32;
+    for (i, face) in mesh.faces() {
+        let at = || source.place(Part::Face(i));
+        let size = face.len();
+        if size < 3 {
+            return Err(MeshError::FaceTooSmall { at: at(), size });
+        }
+        if size > MAX_VALENCE {
+            return Err(MeshError::FaceTooLarge { at: at(), size });
+        }
+        stamp += 1;
+        for &vertex in face {
+            let shown = u64::from(vertex) + first;
+            let Some(last) = last_face.get_mut(vertex as usize) else {
+                let last = count as u64 - 1 + first;
+                return Err(MeshError::VertexOutOfRange { at: at(), vertex: shown, first, last });
+            };
+            if *last == stamp {
+                return Err(MeshError::RepeatedVertex { at: at(), vertex: shown });
+            }
+            *last = stamp;
+            faces_at[vertex as usize] += 1;
+        }
+    }
+    for (vertex, &faces) in faces_at.iter().enumerate() {
+        // A face brings two edges to each of its vertices, which neighbours usually share.
+        if 2 * faces as usize > MAX_VALENCE {
+            let valence = edges_at(mesh, vertex as u32);
+            if valence > MAX_VALENCE {
+                let at = source.place(Part::Vertex(vertex));
+                return Err(MeshError::ValenceTooHigh { at, valence });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Number of different edges at a vertex.
+fn edges_at(mesh: &SubdivMesh, vertex: u32) -> usize {
+    let mut neighbours = Vec::new();
+    for (_, face) in mesh.faces() {
+        if let Some(k) = face.iter().position(|&v| v == vertex) {
+            neighbours.push(face[(k + 1) % face.len()]);
+            neighbours.push(face[(k + face.len() - 1) % face.len()]);
+        }
+    }
+    neighbours.sort_unstable();
+    neighbours.dedup();
+    neighbours.len()
+}
+
+/// A face as its smallest vertex and the one after it, where to find the rest, and its index.
+struct Turned<'a> {
+    key: [u32; 2],
+    face: &'a [u32],
+    start: usize,
+    index: usize,
+}
+
+impl<'a> Turned<'a> {
+    fn new((index, face): (usize, &'a [u32])) -> Self {
+        let start = (0..face.len()).min_by_key(|&k| face[k]).unwrap_or(0);
+        let key = [face[start], face[(start + 1) % face.len()]];
+        Self { key, face, start, index }
+    }
+
+    /// All vertices from the smallest one on, in the face's own direction.
+    fn vertices(&self) -> impl Iterator<Item = &u32> {
+        self.face[self.start..].iter().chain(&self.face[..self.start])
+    }
+}
+
+fn check_duplicates(mesh: &SubdivMesh, source: &Source<'_>) -> Result<(), MeshError> {
+    let mut turned: Vec<_> = mesh.faces().map(Turned::new).collect();
+    turned.sort_unstable_by(|a, b| {
+        a.key.cmp(&b.key).then_with(|| a.vertices().cmp(b.vertices())).then(a.index.cmp(&b.index))
+    });
+    let same = |a: &Turned<'_>, b: &Turned<'_>| a.key == b.key && a.vertices().eq(b.vertices());
+    let first = turned.windows(2).filter(|pair| same(&pair[0], &pair[1])).min_by_key(|pair| pair[1].index);
+    match first {
+        Some(pair) => Err(MeshError::DuplicateFace {
+            at: source.place(Part::Face(pair[1].index)),
+            original: source.spot(Part::Face(pair[0].index)),
+        }),
+        None => Ok(()),
+    }
+}
+
+fn check_sharpness(mesh: &SubdivMesh, source: &Source<'_>) -> Result<(), MeshError> {
+    let count = mesh.points.len();
+    let last = count as u64 - 1;
+    for (i, crease) in mesh.creases.iter().enumerate() {
+        let at = || source.place(Part::Crease(i));
+        let [a, b] = crease.vertices;
+        if let Some(&vertex) = crease.vertices.iter().find(|&&v| v as usize >= count) {
+            return Err(MeshError::CreaseOutOfRange { at: at(), vertex, last });
+        }
+        if a == b {
+            return Err(MeshError::CreaseOnOneVertex { at: at(), vertex: a });
+        }
+        check_sharpness_value(crease.sharpness, at)?;
+    }
+    for (i, corner) in mesh.corners.iter().enumerate() {
+        let at = || source.place(Part::Corner(i));
+        let vertex = corner.vertex;
+        if vertex as usize >= count {
+            return Err(MeshError::CornerOutOfRange { at: at(), vertex, last });
+        }
+        check_sharpness_value(corner.sharpness, at)?;
+    }
+    Ok(())
+}
+
+fn check_sharpness_value(value: f32, at: impl Fn() -> Place) -> Result<(), MeshError> {
+    if !value.is_finite() {
+        return Err(MeshError::SharpnessNotFinite { at: at(), value });
+    }
+    if value < 0.0 {
+        return Err(MeshError::SharpnessNegative { at: at(), value });
+    }
+    Ok(())
+}
+
+/// Refuses a crease that is no edge of a face: OpenSubdiv warns and skips it, and the surface silently lacks it.
+fn check_creased_edges(mesh: &SubdivMesh, source: &Source<'_>) -> Result<(), MeshError> {
+    if mesh.creases.is_empty() {
+        return Ok(());
+    }
+    let edge = |a: u32, b: u32| [a.min(b), a.max(b)];
+    let mut wanted: Vec<_> = mesh.creases.iter().map(|c| edge(c.vertices[0], c.vertices[1])).collect();
+    wanted.sort_unstable();
+    wanted.dedup();
+    let mut found = vec![false; wanted.len()];
+    // Most edges of a mesh are not creased; two look-ups tell them apart without a search.
+    let mut creased = vec![false; mesh.points.len()];
+    for vertex in wanted.as_flattened() {
+        creased[*vertex as usize] = true;
+    }
+    for (_, face) in mesh.faces() {
+        let mut previous = face[face.len() - 1];
+        for &vertex in face {
+            if creased[previous as usize]
+                && creased[vertex as usize]
+                && let Ok(k) = wanted.binary_search(&edge(previous, vertex))
+            {
+                found[k] = true;
+            }
+            previous = vertex;
+        }
+    }
+    for (i, crease) in mesh.creases.iter().enumerate() {
+        let vertices = crease.vertices;
+        let known = wanted.binary_search(&edge(vertices[0], vertices[1]));
+        if known.is_ok_and(|k| !found[k]) {
+            let at = source.place(Part::Crease(i));
+            return Err(MeshError::CreaseWithoutEdge { at, vertices });
+        }
+    }
+    Ok(())
+}
+
+fn check_holes(mesh: &SubdivMesh, source: &Source<'_>) -> Result<(), MeshError> {
+    let count = mesh.face_count();
+    for (i, &face) in mesh.holes.iter().enumerate() {
+        if face as usize >= count {
+            let at = source.place(Part::Hole(i));
+            let last = count as u64 - 1;
+            return Err(MeshError::HoleOutOfRange { at, face, last });
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_end_where_opensubdivs_int_ends() {
+        let at = Place::with("m", Spot::Whole);
+        assert!(check_limit("vertices", i32::MAX as usize, &at).is_ok());
+        let error = check_limit("vertices", i32::MAX as usize + 1, &at).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "m: 2147483648 vertices, but OpenSubdiv's indices end at 2147483647; split the mesh"
+        );
+    }
+}

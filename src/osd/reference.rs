@@ -1,0 +1,171 @@
+//! The regression references: OpenSubdiv's own evaluators of the limit surface.
+
+use super::{Descriptor, Error, check, raw};
+use crate::mesh::SubdivMesh;
+use glam::DVec3;
+use std::ptr::NonNull;
+
+/// What answered a reference sample.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Answer {
+    /// Nothing: the face is a hole or has no limit surface.
+    None,
+    /// A regular patch, exact.
+    Regular,
+    /// An end cap (Far) or an irregular face (Bfr), approximate away from its corners.
+    EndCap,
+}
+
+/// A reference's answer, derivatives by the (u,v) of the ptex face.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ReferenceJet {
+    /// What answered; the other fields are zero for [`Answer::None`].
+    pub answer: Answer,
+    /// Position.
+    pub position: DVec3,
+    /// Derivative by u.
+    pub du: DVec3,
+    /// Derivative by v.
+    pub dv: DVec3,
+}
+
+/// An evaluator that we did not write.
+pub trait Reference {
+    /// Evaluates samples (ptex face, u, v), u and v in [0,1]. Fastest when samples come grouped by face.
+    ///
+    /// # Errors
+    /// A face is out of range, or OpenSubdiv reports an error.
+    fn evaluate(&mut self, samples: &[(u32, f64, f64)]) -> Result<Vec<ReferenceJet>, Error>;
+}
+
+/// Samples in the layout of the header, and room for the answers.
+struct Batch {
+    faces: Vec<i32>,
+    uv: Vec<f64>,
+    jets: Vec<[DVec3; 3]>,
+    answers: Vec<u8>,
+}
+
+impl Batch {
+    fn new(samples: &[(u32, f64, f64)]) -> Self {
+        Self {
+            faces: samples.iter().map(|s| s.0 as i32).collect(),
+            uv: samples.iter().flat_map(|s| [s.1, s.2]).collect(),
+            jets: vec![[DVec3::ZERO; 3]; samples.len()],
+            answers: vec![0; samples.len()],
+        }
+    }
+
+    fn run(
+        mut self,
+        call: impl FnOnce(i32, *const i32, *const f64, *mut f64, *mut u8) -> raw::osd_status,
+    ) -> Result<Vec<ReferenceJet>, Error> {
+        let jets: &mut [f64] = bytemuck::cast_slice_mut(&mut self.jets);
+        check(call(
+            self.faces.len() as i32,
+            self.faces.as_ptr(),
+            self.uv.as_ptr(),
+            jets.as_mut_ptr(),
+            self.answers.as_mut_ptr(),
+        ))?;
+        Ok(self
+            .jets
+            .iter()
+            .zip(&self.answers)
+            .map(|(&[position, du, dv], &answer)| ReferenceJet {
+                answer: match raw::osd_answer::from(answer) {
+                    raw::OSD_ANSWER_REGULAR => Answer::Regular,
+                    raw::OSD_ANSWER_END_CAP => Answer::EndCap,
+                    _ => Answer::None,
+                },
+                position,
+                du,
+                dv,
+            })
+            .collect())
+    }
+}
+
+/// Owner of a `Far::PatchTable` in double precision with Gregory end caps, and of its points.
+///
+/// Exact on regular patches, and at dyadic points i/2^k, k <= isolation; end caps approximate elsewhere. The options
+/// are those of design.md 3.4: infinitely sharp patches on, legacy sharp corners and single-crease patches off.
+#[derive(Debug)]
+pub struct Far(NonNull<raw::osd_far>);
+
+impl Drop for Far {
+    fn drop(&mut self) {
+        // SAFETY: the handle came from osd_far_create and is released here alone.
+        unsafe { raw::osd_far_destroy(self.0.as_ptr()) }
+    }
+}
+
+impl Far {
+    /// Refines to `isolation` (1..=10) and builds the table.
+    ///
+    /// # Errors
+    /// The mesh is not valid, `isolation` is out of range, or OpenSubdiv reports an error.
+    pub fn new(mesh: &SubdivMesh, isolation: u32) -> Result<Self, Error> {
+        let descriptor = Descriptor::new(mesh)?;
+        let mut handle = std::ptr::null_mut();
+        // SAFETY: the descriptor outlives the call, which copies it; its indices are validated.
+        check(unsafe {
+            raw::osd_far_create(
+                &descriptor.as_raw(),
+                descriptor.points.as_ptr(),
+                isolation.min(i32::MAX as u32) as i32,
+                &mut handle,
+            )
+        })?;
+        Ok(Self(NonNull::new(handle).expect("a table comes with status OK")))
+    }
+}
+
+impl Reference for Far {
+    fn evaluate(&mut self, samples: &[(u32, f64, f64)]) -> Result<Vec<ReferenceJet>, Error> {
+        // SAFETY: the handle is live and borrowed mutably; the arrays are sized by `count`.
+        Batch::new(samples).run(|count, faces, uv, jets, answers| unsafe {
+            raw::osd_far_evaluate(self.0.as_ptr(), count, faces, uv, jets, answers)
+        })
+    }
+}
+
+/// Owner of a `Bfr::RefinerSurfaceFactory` in double precision.
+#[derive(Debug)]
+pub struct Bfr(NonNull<raw::osd_bfr>);
+
+impl Drop for Bfr {
+    fn drop(&mut self) {
+        // SAFETY: the handle came from osd_bfr_create and is released here alone.
+        unsafe { raw::osd_bfr_destroy(self.0.as_ptr()) }
+    }
+}
+
+impl Bfr {
+    /// OpenSubdiv's default approximation levels for smooth and sharp features.
+    pub const DEFAULT_LEVELS: (u32, u32) = (2, 6);
+
+    /// A factory with the given approximation levels (smooth, sharp), each 1..=10.
+    ///
+    /// # Errors
+    /// The mesh is not valid, a level is out of range, or OpenSubdiv reports an error.
+    pub fn new(mesh: &SubdivMesh, levels: (u32, u32)) -> Result<Self, Error> {
+        let descriptor = Descriptor::new(mesh)?;
+        let mut handle = std::ptr::null_mut();
+        let [smooth, sharp] = [levels.0, levels.1].map(|level| level.min(i32::MAX as u32) as i32);
+        // SAFETY: the descriptor outlives the call, which copies it; its indices are validated.
+        check(unsafe {
+            raw::osd_bfr_create(&descriptor.as_raw(), descriptor.points.as_ptr(), smooth, sharp, &mut handle)
+        })?;
+        Ok(Self(NonNull::new(handle).expect("a factory comes with status OK")))
+    }
+}
+
+impl Reference for Bfr {
+    fn evaluate(&mut self, samples: &[(u32, f64, f64)]) -> Result<Vec<ReferenceJet>, Error> {
+        // SAFETY: the handle is live and borrowed mutably; the arrays are sized by `count`.
+        Batch::new(samples).run(|count, faces, uv, jets, answers| unsafe {
+            raw::osd_bfr_evaluate(self.0.as_ptr(), count, faces, uv, jets, answers)
+        })
+    }
+}

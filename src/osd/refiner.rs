@@ -1,0 +1,233 @@
+//! Topology refinement.
+
+use super::{Descriptor, Error, MAX_ISOLATION, check, raw};
+use crate::mesh::SubdivMesh;
+use glam::DVec3;
+use std::ptr::NonNull;
+
+/// A vertex rule (`Sdc::Crease::Rule`).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Rule {
+    /// No sharp edge.
+    Smooth,
+    /// One sharp edge.
+    Dart,
+    /// Two sharp edges.
+    Crease,
+    /// A sharp vertex, or three and more sharp edges.
+    Corner,
+}
+
+impl Rule {
+    fn from_raw(rule: u8) -> Self {
+        match raw::osd_rule::from(rule) {
+            raw::OSD_RULE_SMOOTH => Self::Smooth,
+            raw::OSD_RULE_DART => Self::Dart,
+            raw::OSD_RULE_CREASE => Self::Crease,
+            _ => Self::Corner, // `unknown` is what OpenSubdiv calls non-manifold vertices: it treats them as corners
+        }
+    }
+}
+
+/// One level of refined topology, copied out of OpenSubdiv. Indices are local to the level.
+#[derive(Debug, Clone, Default)]
+pub struct Level {
+    /// Face f has the corners `face_offsets[f] .. face_offsets[f+1]` of the four arrays below.
+    pub face_offsets: Vec<i32>,
+    /// Vertex at each corner.
+    pub face_vertices: Vec<i32>,
+    /// Edge from each corner to the next.
+    pub face_edges: Vec<i32>,
+    /// Child face at each corner, -1 where there is none.
+    pub face_children: Vec<i32>,
+    /// 1 for faces without a limit surface.
+    pub face_holes: Vec<u8>,
+    /// The faces of each edge: the second is -1 on a boundary, both are -2 where the edge is not manifold.
+    pub edge_faces: Vec<[i32; 2]>,
+    /// Sharpness of each edge, 0 to 10 (infinite).
+    pub edge_sharpness: Vec<f32>,
+    /// Sharpness of each vertex, 0 to 10 (infinite).
+    pub vertex_sharpness: Vec<f32>,
+    /// Rule of each vertex.
+    pub vertex_rules: Vec<Rule>,
+    /// Child vertex of each vertex in the next level.
+    pub vertex_children: Vec<i32>,
+}
+
+impl Level {
+    /// Number of faces.
+    pub fn face_count(&self) -> usize {
+        self.face_holes.len()
+    }
+
+    /// Number of vertices.
+    pub fn vertex_count(&self) -> usize {
+        self.vertex_sharpness.len()
+    }
+
+    /// Corners of a face: a range of the per-corner arrays.
+    pub fn corners(&self, face: usize) -> std::ops::Range<usize> {
+        self.face_offsets[face] as usize..self.face_offsets[face + 1] as usize
+    }
+}
+
+/// Owner of a `Far::TopologyRefiner`.
+#[derive(Debug)]
+pub struct Refiner {
+    handle: NonNull<raw::osd_refiner>,
+    vertex_counts: Vec<usize>,
+}
+
+// SAFETY: the handle is the only reference to the C++ object and the object has no thread affinity.
+unsafe impl Send for Refiner {}
+
+impl Drop for Refiner {
+    fn drop(&mut self) {
+        // SAFETY: the handle came from osd_refiner_create and is released here alone.
+        unsafe { raw::osd_refiner_destroy(self.handle.as_ptr()) }
+    }
+}
+
+impl Refiner {
+    /// Refines round every feature: semi-sharp ones to `isolation`, all others to `secondary` levels.
+    ///
+    /// # Errors
+    /// The mesh is not valid, `isolation` is not in 1..=10, or OpenSubdiv reports an error.
+    pub fn adaptive(mesh: &SubdivMesh, isolation: u32, secondary: u32) -> Result<Self, Error> {
+        Self::check_level(isolation, 1)?;
+        Self::check_level(secondary, 0)?;
+        // SAFETY: the handle is live for the call.
+        Self::new(mesh, |handle| unsafe {
+            raw::osd_refiner_refine_adaptive(handle, isolation as i32, secondary as i32)
+        })
+    }
+
+    /// Refines every face to `level`.
+    ///
+    /// # Errors
+    /// The mesh is not valid, `level` is not in 1..=10, or OpenSubdiv reports an error.
+    pub fn uniform(mesh: &SubdivMesh, level: u32) -> Result<Self, Error> {
+        Self::check_level(level, 1)?;
+        // SAFETY: the handle is live for the call.
+        Self::new(mesh, |handle| unsafe { raw::osd_refiner_refine_uniform(handle, level as i32) })
+    }
+
+    fn check_level(level: u32, least: u32) -> Result<(), Error> {
+        if (least..=MAX_ISOLATION).contains(&level) {
+            return Ok(());
+        }
+        Err(Error::OpenSubdiv(format!(
+            "refinement level {level} is outside {least} to {MAX_ISOLATION} (3.5.0 corrupts memory above it)"
+        )))
+    }
+
+    fn new(mesh: &SubdivMesh, refine: impl FnOnce(*mut raw::osd_refiner) -> raw::osd_status) -> Result<Self, Error> {
+        let descriptor = Descriptor::new(mesh)?;
+        let mut handle = std::ptr::null_mut();
+        // SAFETY: the descriptor outlives the call, which copies it; its indices are validated.
+        check(unsafe { raw::osd_refiner_create(&descriptor.as_raw(), &mut handle) })?;
+        let handle = NonNull::new(handle).expect("a refiner comes with status OK");
+        let mut refiner = Self { handle, vertex_counts: Vec::new() };
+        check(refine(handle.as_ptr()))?;
+        let mut levels = 0;
+        // SAFETY: the handle is live and the output is a local.
+        check(unsafe { raw::osd_refiner_level_count(handle.as_ptr(), &mut levels) })?;
+        for level in 0..levels {
+            refiner.vertex_counts.push(refiner.sizes(level)?.vertices as usize);
+        }
+        Ok(refiner)
+    }
+
+    fn sizes(&self, level: i32) -> Result<raw::osd_level_sizes, Error> {
+        let mut sizes = raw::osd_level_sizes::default();
+        // SAFETY: the handle is live; the callee checks the level.
+        check(unsafe { raw::osd_refiner_level_sizes(self.handle.as_ptr(), level, &mut sizes) })?;
+        Ok(sizes)
+    }
+
+    /// Number of levels, the control mesh included.
+    pub fn level_count(&self) -> usize {
+        self.vertex_counts.len()
+    }
+
+    /// Number of vertices of each level.
+    pub fn vertex_counts(&self) -> &[usize] {
+        &self.vertex_counts
+    }
+
+    /// Copies the topology of a level.
+    ///
+    /// # Errors
+    /// `level` is not below [`level_count`](Self::level_count).
+    pub fn level(&self, level: usize) -> Result<Level, Error> {
+        let sizes = self.sizes(level as i32)?;
+        let [vertices, edges, faces, corners] =
+            [sizes.vertices, sizes.edges, sizes.faces, sizes.face_vertices].map(|n| n as usize);
+        let mut out = Level {
+            face_offsets: vec![0; faces + 1],
+            face_vertices: vec![0; corners],
+            face_edges: vec![0; corners],
+            face_children: vec![0; corners],
+            face_holes: vec![0; faces],
+            edge_faces: vec![[0; 2]; edges],
+            edge_sharpness: vec![0.0; edges],
+            vertex_sharpness: vec![0.0; vertices],
+            vertex_rules: Vec::new(),
+            vertex_children: vec![0; vertices],
+        };
+        let mut rules = vec![0u8; vertices];
+        let arrays = raw::osd_level_arrays {
+            face_offsets: out.face_offsets.as_mut_ptr(),
+            face_vertices: out.face_vertices.as_mut_ptr(),
+            face_edges: out.face_edges.as_mut_ptr(),
+            face_children: out.face_children.as_mut_ptr(),
+            face_holes: out.face_holes.as_mut_ptr(),
+            edge_faces: out.edge_faces.as_mut_ptr().cast(),
+            edge_sharpness: out.edge_sharpness.as_mut_ptr(),
+            vertex_sharpness: out.vertex_sharpness.as_mut_ptr(),
+            vertex_rules: rules.as_mut_ptr(),
+            vertex_children: out.vertex_children.as_mut_ptr(),
+        };
+        // SAFETY: every array has the size that ffi/osd.h states for it.
+        check(unsafe { raw::osd_refiner_level(self.handle.as_ptr(), level as i32, &arrays) })?;
+        out.vertex_rules = rules.into_iter().map(Rule::from_raw).collect();
+        Ok(out)
+    }
+
+    /// Refined points of all levels, level 0 (a copy of `points`) first.
+    ///
+    /// # Errors
+    /// OpenSubdiv reports an error.
+    ///
+    /// # Panics
+    /// `points` is not one point for each vertex of level 0.
+    pub fn interpolate(&self, points: &[DVec3]) -> Result<Vec<DVec3>, Error> {
+        assert_eq!(points.len(), self.vertex_counts[0], "one point a control vertex");
+        let mut out = vec![DVec3::ZERO; self.vertex_counts.iter().sum()];
+        let source: &[f64] = bytemuck::cast_slice(points);
+        let target: &mut [f64] = bytemuck::cast_slice_mut(&mut out);
+        // SAFETY: source holds level 0 and target all levels, as the header asks.
+        check(unsafe { raw::osd_refiner_interpolate(self.handle.as_ptr(), source.as_ptr(), target.as_mut_ptr()) })?;
+        Ok(out)
+    }
+
+    /// Limit positions of the last level by `PrimvarRefiner::Limit`, after [`uniform`](Self::uniform).
+    ///
+    /// Exact for smooth, crease and boundary vertices without finite sharpness; wrong for infinitely sharp darts and
+    /// interior vertices of valence 2 (3.5.0).
+    ///
+    /// # Errors
+    /// OpenSubdiv reports an error, as it does after adaptive refinement.
+    ///
+    /// # Panics
+    /// `points` is not one point for each vertex of the last level.
+    pub fn limit(&self, points: &[DVec3]) -> Result<Vec<DVec3>, Error> {
+        assert_eq!(Some(&points.len()), self.vertex_counts.last(), "one point a vertex of the last level");
+        let mut out = vec![DVec3::ZERO; points.len()];
+        let source: &[f64] = bytemuck::cast_slice(points);
+        let target: &mut [f64] = bytemuck::cast_slice_mut(&mut out);
+        // SAFETY: both arrays hold the last level, as the header asks.
+        check(unsafe { raw::osd_refiner_limit(self.handle.as_ptr(), source.as_ptr(), target.as_mut_ptr()) })?;
+        Ok(out)
+    }
+}

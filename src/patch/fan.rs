@@ -1,0 +1,165 @@
+//! The faces round a vertex, as far as they influence one of them.
+
+use crate::osd::{INFINITE_SHARPNESS, Level, Rule};
+
+/// Faces, spokes and opposite corners round a vertex, counter-clockwise.
+///
+/// A closed fan goes all the way round a smooth vertex or a dart; an open one is the sector between two edges that
+/// stop all influence: infinitely sharp, boundary or not manifold. Face i lies between the spokes i and i+1 (in a
+/// closed fan the last face ends at spoke 0).
+#[derive(Debug, Clone, Default)]
+pub(super) struct Fan {
+    /// The vertex at the centre.
+    pub vertex: usize,
+    /// Its rule.
+    pub rule: Option<Rule>,
+    /// Goes all the way round.
+    pub closed: bool,
+    /// Vertex at the far end of each spoke.
+    pub spokes: Vec<usize>,
+    /// Whether each spoke is infinitely sharp.
+    pub sharp: Vec<bool>,
+    /// Opposite corner of each face.
+    pub opposites: Vec<usize>,
+    /// The face that the fan was made for.
+    pub index: usize,
+    /// All faces are quads.
+    pub quads: bool,
+}
+
+/// A corner of a face: its offset in the per-corner arrays of the level.
+#[derive(Clone, Copy, PartialEq, Eq)]
+struct Corner {
+    face: usize,
+    offset: usize,
+}
+
+impl Corner {
+    fn step(self, level: &Level, forward: bool) -> Self {
+        let corners = level.corners(self.face);
+        let offset = match forward {
+            true if self.offset + 1 == corners.end => corners.start,
+            true => self.offset + 1,
+            false if self.offset == corners.start => corners.end - 1,
+            false => self.offset - 1,
+        };
+        Self { offset, ..self }
+    }
+
+    /// The same vertex in the next face counter-clockwise (across the incoming edge) or clockwise (across the
+    /// outgoing edge); `None` where the edge stops influence.
+    fn turn(self, level: &Level, counter_clockwise: bool, through_sharp: bool) -> Option<Self> {
+        let corner = if counter_clockwise { self.step(level, false) } else { self };
+        let edge = level.face_edges[corner.offset] as usize;
+        if level.edge_sharpness[edge] >= INFINITE_SHARPNESS && !through_sharp {
+            return None;
+        }
+        let [a, b] = level.edge_faces[edge];
+        if b < 0 {
+            return None;
+        }
+        let face = if a as usize == self.face { b } else { a } as usize;
+        let vertex = level.face_vertices[self.offset];
+        let offset = level.corners(face).find(|&i| level.face_vertices[i] == vertex)?;
+        let next = Self { face, offset };
+        // A neighbour of the other orientation is met at the wrong edge: OpenSubdiv calls that not manifold.
+        let met = if counter_clockwise { next } else { next.step(level, false) };
+        (level.face_edges[met.offset] as usize == edge).then_some(next)
+    }
+}
+
+impl Fan {
+    /// The fan round corner `corner` (0-based, within the face) for `face`.
+    pub fn gather(&mut self, level: &Level, face: usize, corner: usize) {
+        let own = Corner { face, offset: level.corners(face).start + corner };
+        let vertex = level.face_vertices[own.offset] as usize;
+        let rule = level.vertex_rules[vertex];
+        let through_sharp = rule == Rule::Dart;
+        *self = Self {
+            vertex,
+            rule: Some(rule),
+            spokes: std::mem::take(&mut self.spokes),
+            sharp: std::mem::take(&mut self.sharp),
+            opposites: std::mem::take(&mut self.opposites),
+            quads: true,
+            ..Self::default()
+        };
+        self.spokes.clear();
+        self.sharp.clear();
+        self.opposites.clear();
+
+        let mut first = own;
+        let mut before = 0;
+        while let Some(next) = first.turn(level, false, through_sharp) {
+            if next == own {
+                self.closed = true;
+                first = own;
+                before = 0;
+                break;
+            }
+            first = next;
+            before += 1;
+        }
+        self.index = before;
+
+        let mut at = first;
+        loop {
+            self.push_spoke(level, at);
+            self.opposites.push(level.face_vertices[at.step(level, true).step(level, true).offset] as usize);
+            self.quads &= level.corners(at.face).len() == 4;
+            match at.turn(level, true, through_sharp) {
+                Some(next) if next == first => break,
+                Some(next) => at = next,
+                None => {
+                    let incoming = at.step(level, false);
+                    self.spokes.push(level.face_vertices[incoming.offset] as usize);
+                    self.sharp.push(true);
+                    break;
+                }
+            }
+        }
+        if !self.closed {
+            self.sharp[0] = true;
+        }
+    }
+
+    fn push_spoke(&mut self, level: &Level, at: Corner) {
+        self.spokes.push(level.face_vertices[at.step(level, true).offset] as usize);
+        let edge = level.face_edges[at.offset] as usize;
+        self.sharp.push(level.edge_sharpness[edge] >= INFINITE_SHARPNESS);
+    }
+
+    /// Number of faces.
+    pub fn faces(&self) -> usize {
+        self.opposites.len()
+    }
+
+    /// The rules round the vertex are those of a uniform bicubic B-spline with phantom points.
+    pub fn is_regular(&self) -> bool {
+        self.quads
+            && match self.rule {
+                Some(Rule::Smooth) => self.closed && self.faces() == 4,
+                Some(Rule::Crease) => !self.closed && self.faces() == 2,
+                Some(Rule::Corner) => !self.closed && self.faces() == 1,
+                _ => false,
+            }
+    }
+
+    /// Spoke `offset` places counter-clockwise of the own face's first one; `None` beyond an open end.
+    pub fn spoke(&self, offset: isize) -> Option<usize> {
+        self.slot(offset, self.spokes.len()).map(|i| self.spokes[i])
+    }
+
+    /// Opposite corner of the face `offset` places counter-clockwise of the own one; `None` beyond an open end.
+    pub fn opposite(&self, offset: isize) -> Option<usize> {
+        self.slot(offset, self.opposites.len()).map(|i| self.opposites[i])
+    }
+
+    fn slot(&self, offset: isize, count: usize) -> Option<usize> {
+        let i = self.index as isize + offset;
+        if self.closed {
+            return Some(i.rem_euclid(count as isize) as usize);
+        }
+        (0..count as isize).contains(&i).then_some(i as usize)
+    }
+}

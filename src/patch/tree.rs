@@ -1,0 +1,289 @@
+//! Finds the patches: walks the refined levels and stops at the first face whose limit is known in closed form.
+
+use super::fan::Fan;
+use super::{Node, Patch, PatchError, PatchKind, Patches, RingClass, Support, Tip};
+use crate::osd::{INFINITE_SHARPNESS, Level, Refiner, Rule};
+use std::collections::HashMap;
+
+/// No vertex: a phantom point beyond a boundary or an infinitely sharp edge.
+pub const PHANTOM: u32 = u32::MAX;
+
+/// What became of a face of a level.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum State {
+    Unvisited,
+    Leaf,
+    Split,
+}
+
+struct Walk {
+    levels: Vec<Level>,
+    /// First refined vertex of each level in the concatenated points.
+    first_vertex: Vec<usize>,
+    /// For each level and vertex: finite sharpness on it or on an edge of it, so its rules still change.
+    restless: Vec<Vec<bool>>,
+    states: Vec<Vec<State>>,
+    /// Level and face of each patch.
+    places: Vec<(usize, usize)>,
+    class_indices: HashMap<RingClass, u32>,
+    fans: [Fan; 4],
+    out: Patches,
+}
+
+/// Cell of the quadtree over a ptex face.
+#[derive(Clone, Copy)]
+struct Cell {
+    ptex: u32,
+    depth: u8,
+    origin: [u16; 2],
+}
+
+impl Cell {
+    fn child(self, corner: usize) -> Self {
+        let [du, dv] = [[0, 0], [1, 0], [1, 1], [0, 1]][corner];
+        Self { depth: self.depth + 1, origin: [2 * self.origin[0] + du, 2 * self.origin[1] + dv], ..self }
+    }
+}
+
+pub(super) fn build(refiner: &Refiner) -> Result<Patches, PatchError> {
+    let levels = (0..refiner.level_count()).map(|i| refiner.level(i)).collect::<Result<Vec<_>, _>>()?;
+    let first_vertex =
+        refiner.vertex_counts().iter().scan(0, |sum, &count| Some(std::mem::replace(sum, *sum + count))).collect();
+    let mut walk = Walk {
+        first_vertex,
+        restless: levels.iter().map(restless_vertices).collect(),
+        states: levels.iter().map(|level| vec![State::Unvisited; level.face_count()]).collect(),
+        places: Vec::new(),
+        class_indices: HashMap::new(),
+        fans: Default::default(),
+        out: Patches::default(),
+        levels,
+    };
+    walk.roots()?;
+    walk.mark_transitions();
+    Ok(walk.out)
+}
+
+fn restless_vertices(level: &Level) -> Vec<bool> {
+    let finite = |sharpness: f32| sharpness > 0.0 && sharpness < INFINITE_SHARPNESS;
+    let mut restless: Vec<bool> = level.vertex_sharpness.iter().map(|&s| finite(s)).collect();
+    for face in 0..level.face_count() {
+        let corners = level.corners(face);
+        for i in corners.clone() {
+            if finite(level.edge_sharpness[level.face_edges[i] as usize]) {
+                let next = if i + 1 == corners.end { corners.start } else { i + 1 };
+                restless[level.face_vertices[i] as usize] = true;
+                restless[level.face_vertices[next] as usize] = true;
+            }
+        }
+    }
+    restless
+}
+
+impl Walk {
+    fn roots(&mut self) -> Result<(), PatchError> {
+        let mut ptex = 0;
+        for face in 0..self.levels[0].face_count() {
+            let size = self.levels[0].corners(face).len();
+            let cell = |ptex| Cell { ptex, depth: 0, origin: [0, 0] };
+            if size == 4 {
+                let node = self.visit(0, face, cell(ptex))?;
+                self.out.roots.push(node);
+                ptex += 1;
+                continue;
+            }
+            self.states[0][face] = State::Split;
+            for corner in 0..size {
+                let node = match self.levels[0].face_holes[face] {
+                    0 => {
+                        let child = self.child(0, face, corner, 0)?;
+                        self.visit(1, child, cell(ptex))?
+                    }
+                    _ => Node::Hole,
+                };
+                self.out.roots.push(node);
+                ptex += 1;
+            }
+        }
+        Ok(())
+    }
+
+    /// The child of a face at a corner, which must show that corner at place `expected`.
+    fn child(&self, level: usize, face: usize, corner: usize, expected: usize) -> Result<usize, PatchError> {
+        let topology = &self.levels[level];
+        let offset = topology.corners(face).start + corner;
+        let child =
+            usize::try_from(topology.face_children[offset]).map_err(|_| PatchError::NotRefined { level, face })?;
+        let next = &self.levels[level + 1];
+        let vertex = next.face_vertices[next.corners(child).start + expected];
+        if vertex != topology.vertex_children[topology.face_vertices[offset] as usize] {
+            return Err(PatchError::ChildOrder { level, face });
+        }
+        Ok(child)
+    }
+
+    fn visit(&mut self, level: usize, face: usize, cell: Cell) -> Result<Node, PatchError> {
+        if self.levels[level].face_holes[face] != 0 {
+            return Ok(Node::Hole);
+        }
+        if let Some(patch) = self.leaf(level, face, cell) {
+            self.states[level][face] = State::Leaf;
+            self.places.push((level, face));
+            self.out.patches.push(patch);
+            return Ok(Node::Leaf(self.out.patches.len() as u32 - 1));
+        }
+        self.states[level][face] = State::Split;
+        let mut children = [Node::Hole; 4];
+        for (corner, node) in children.iter_mut().enumerate() {
+            let child = self.child(level, face, corner, corner)?;
+            *node = self.visit(level + 1, child, cell.child(corner))?;
+        }
+        self.out.splits.push(children);
+        Ok(Node::Split(self.out.splits.len() as u32 - 1))
+    }
+
+    /// The patch of a face, if its limit has a closed form at this level.
+    fn leaf(&mut self, level: usize, face: usize, cell: Cell) -> Option<Patch> {
+        let topology = &self.levels[level];
+        let corners = topology.corners(face);
+        if corners.clone().any(|i| self.restless[level][topology.face_vertices[i] as usize]) {
+            return None;
+        }
+        for (corner, fan) in self.fans.iter_mut().enumerate() {
+            fan.gather(topology, face, corner);
+        }
+        let irregular: Vec<usize> = (0..4).filter(|&i| !self.fans[i].is_regular()).collect();
+        let (kind, rotation) = match irregular[..] {
+            [] => (PatchKind::Regular, 0),
+            [corner] if self.stands_alone(corner) => (kind_of(&self.fans[corner])?, corner),
+            _ => return None,
+        };
+        let support = self.support(level, kind, rotation);
+        self.out.supports.push(support);
+        Some(Patch {
+            ptex: cell.ptex,
+            depth: cell.depth,
+            origin: cell.origin,
+            rotation: rotation as u8,
+            kind,
+            transition: 0,
+        })
+    }
+
+    /// Whether the other three corners carry no feature except the spokes of the extraordinary vertex, so that the
+    /// class says everything (design.md 3.1).
+    fn stands_alone(&self, corner: usize) -> bool {
+        let [ev, next, far, before] = std::array::from_fn(|i| &self.fans[(corner + i) % 4]);
+        // `next` sees the spoke as the edge that comes in: its sector ends there, so the own face is the last one.
+        let along_first = match next.rule {
+            Some(Rule::Smooth) => true,
+            Some(Rule::Crease) => next.index == 1,
+            _ => false,
+        };
+        let along_second = match before.rule {
+            Some(Rule::Smooth) => true,
+            Some(Rule::Crease) => before.index == 0,
+            _ => false,
+        };
+        ev.quads && far.rule == Some(Rule::Smooth) && along_first && along_second
+    }
+
+    fn support(&mut self, level: usize, kind: PatchKind, rotation: usize) -> Support {
+        let base = self.first_vertex[level];
+        let global = |vertex: usize| (base + vertex) as u32;
+        let mut grid = [PHANTOM; 16];
+        for corner in 0..4 {
+            let fan = &self.fans[(rotation + corner) % 4];
+            if corner > 0 || kind == PatchKind::Regular {
+                place(&mut grid, fan, corner, global);
+            }
+        }
+        let first = self.out.vertices.len() as u32;
+        if kind == PatchKind::Regular {
+            self.out.vertices.extend(grid);
+            return Support { first, class: None };
+        }
+        let fan = &self.fans[rotation];
+        let class = RingClass::new(fan);
+        self.out.vertices.push(global(fan.vertex));
+        self.out.vertices.extend(fan.spokes.iter().map(|&v| global(v)));
+        self.out.vertices.extend(fan.opposites.iter().map(|&v| global(v)));
+        self.out.vertices.extend(class.outer().iter().map(|&(i, j)| grid[slot(i, j)]));
+        let next = self.class_indices.len() as u32;
+        let index = *self.class_indices.entry(class).or_insert(next);
+        if index == next {
+            self.out.classes.push(class);
+        }
+        Support { first, class: Some(index) }
+    }
+
+    fn mark_transitions(&mut self) {
+        for (patch, &(level, face)) in self.out.patches.iter_mut().zip(&self.places) {
+            let topology = &self.levels[level];
+            for (edge, offset) in topology.corners(face).enumerate() {
+                let faces = topology.edge_faces[topology.face_edges[offset] as usize];
+                let neighbour = if faces[0] == face as i32 { faces[1] } else { faces[0] };
+                let split = usize::try_from(neighbour).is_ok_and(|f| self.states[level][f] == State::Split);
+                let local = (edge + 4 - patch.rotation as usize) % 4;
+                patch.transition |= u8::from(split) << local;
+            }
+        }
+    }
+}
+
+/// Index of the grid point (i,j), i and j in -1..=2, in a 4x4 net.
+pub(crate) fn slot(i: isize, j: isize) -> usize {
+    (4 * (j + 1) + i + 1) as usize
+}
+
+/// Places what a regular corner's fan knows into the 4x4 net of the face.
+fn place(grid: &mut [u32; 16], fan: &Fan, corner: usize, global: impl Fn(usize) -> u32) {
+    // Position of the corner, and the directions to the next and the previous one.
+    let (at, u, v) =
+        [([0, 0], [1, 0], [0, 1]), ([1, 0], [0, 1], [-1, 0]), ([1, 1], [-1, 0], [0, -1]), ([0, 1], [0, -1], [1, 0])]
+            [corner];
+    let mut put = |i: isize, j: isize, vertex: Option<usize>| {
+        if let Some(vertex) = vertex {
+            grid[slot(at[0] + i * u[0] + j * v[0], at[1] + i * u[1] + j * v[1])] = global(vertex);
+        }
+    };
+    put(0, 0, Some(fan.vertex));
+    put(1, 0, fan.spoke(0));
+    put(1, 1, fan.opposite(0));
+    put(0, 1, fan.spoke(1));
+    put(-1, 0, fan.spoke(2));
+    put(-1, 1, fan.opposite(1));
+    put(0, -1, fan.spoke(-1));
+    put(1, -1, fan.opposite(-1));
+    if fan.closed {
+        put(-1, -1, fan.opposite(2));
+    }
+}
+
+fn kind_of(fan: &Fan) -> Option<PatchKind> {
+    match (fan.rule?, fan.closed) {
+        (Rule::Smooth, true) => Some(PatchKind::Smooth),
+        (Rule::Dart, true) => Some(PatchKind::Dart),
+        (Rule::Crease, false) => Some(PatchKind::Crease),
+        (Rule::Corner, _) => Some(PatchKind::Corner),
+        _ => None,
+    }
+}
+
+impl RingClass {
+    fn new(fan: &Fan) -> Self {
+        let tip = match fan.rule {
+            Some(Rule::Crease) => Tip::Crease,
+            Some(Rule::Corner) => Tip::Corner,
+            _ => Tip::Smooth,
+        };
+        let dart = fan.closed.then(|| fan.sharp.iter().position(|&sharp| sharp)).flatten();
+        Self {
+            faces: fan.faces() as u16,
+            closed: fan.closed,
+            index: fan.index as u16,
+            tip,
+            sharp_spoke: dart.map(|i| i as u16),
+        }
+    }
+}

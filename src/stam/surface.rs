@@ -1,0 +1,214 @@
+//! The limit surface of a mesh: patches, points, tables, evaluation.
+
+use super::class::{ClassTable, WINDOW_POINTS};
+use super::{Jet, Window, weights};
+use crate::mesh::SubdivMesh;
+use crate::patch::{PHANTOM, Patch, PatchError, PatchKind, Patches, RingClass, slot};
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// The control net of a patch, as an evaluator wants it.
+#[derive(Debug, Clone)]
+#[expect(clippy::large_enum_variant, reason = "a net is a value on its way into a table; a box each would cost more")]
+pub enum Net {
+    /// 16 uniform bicubic B-spline points, u fastest: point (i,j), i and j in -1..=2, at `4*(j+1) + (i+1)`; the corners
+    /// of the patch are at 5, 6, 10, 9.
+    Regular([DVec3; 16]),
+    /// Normalised Stam table, design.md 3.2.
+    Irregular {
+        /// s0, the limit position of the extraordinary vertex at local (0,0).
+        limit: DVec3,
+        /// lambda, the largest eigenvalue of the subdivision matrix below 1.
+        lambda: f64,
+        /// Phat of level n at `levels[n-1]`: 24 points, the grid (a,b), a and b in -1..=3, u fastest, without (-1,-1):
+        /// point (a,b) at `5*(b+1) + (a+1) - 1`.
+        levels: Vec<[DVec3; WINDOW_POINTS]>,
+    },
+}
+
+/// The limit surface of a mesh.
+#[derive(Debug)]
+pub struct LimitSurface {
+    patches: Patches,
+    tables: Vec<ClassTable>,
+    /// Refined points of all levels.
+    points: Vec<DVec3>,
+    diagonal: f64,
+}
+
+impl LimitSurface {
+    /// Refines the mesh and builds its patches and tables.
+    ///
+    /// # Errors
+    /// The mesh is not valid, OpenSubdiv refuses it, or a face stays without a closed form.
+    pub fn new(mesh: &SubdivMesh) -> Result<Self, PatchError> {
+        let (patches, refiner) = Patches::new(mesh)?;
+        let points = refiner.interpolate(&mesh.points)?;
+        let tables = patches.classes().par_iter().map(|&class| ClassTable::new(class)).collect();
+        Ok(Self { patches, tables, points, diagonal: mesh.diagonal() })
+    }
+
+    /// All patches, in ptex order.
+    pub fn patches(&self) -> &[Patch] {
+        self.patches.all()
+    }
+
+    /// The classes of the irregular patches, in the order of their tables.
+    pub fn classes(&self) -> &[RingClass] {
+        self.patches.classes()
+    }
+
+    /// The class tables.
+    pub fn tables(&self) -> &[ClassTable] {
+        &self.tables
+    }
+
+    /// Index into [`classes`](Self::classes) of an irregular patch.
+    pub fn class(&self, patch: usize) -> Option<usize> {
+        self.patches.class(patch)
+    }
+
+    /// Number of ptex faces, holes included.
+    pub fn ptex_count(&self) -> usize {
+        self.patches.ptex_count()
+    }
+
+    /// Length of the bounding-box diagonal of the control points: the unit of every tolerance.
+    pub fn diagonal(&self) -> f64 {
+        self.diagonal
+    }
+
+    /// A box that encloses the limit surface: that of the refined points that control it (all rules are convex
+    /// combinations). `None` for a surface without patches.
+    pub fn bounds(&self) -> Option<[DVec3; 2]> {
+        let used = (0..self.patches().len()).flat_map(|patch| self.patches.support(patch));
+        used.filter(|&&v| v != PHANTOM).map(|&v| self.points[v as usize]).fold(None, |bounds: Option<[DVec3; 2]>, p| {
+            Some(bounds.map_or([p, p], |[low, high]| [low.min(p), high.max(p)]))
+        })
+    }
+
+    /// The patch at (u,v), each in [0,1], of a ptex face, and the patch-local parameters; `None` in a hole.
+    ///
+    /// # Panics
+    /// `ptex` is not below [`ptex_count`](Self::ptex_count).
+    pub fn locate(&self, ptex: u32, uv: [f64; 2]) -> Option<(usize, [f64; 2])> {
+        self.patches.locate(ptex, uv)
+    }
+
+    /// The kind of a patch.
+    pub fn kind(&self, patch: usize) -> PatchKind {
+        self.patches()[patch].kind
+    }
+
+    /// The 16 points of a regular patch, phantom points filled in.
+    fn regular_net(&self, patch: usize) -> [DVec3; 16] {
+        let support = self.patches.support(patch);
+        let mut net = [DVec3::ZERO; 16];
+        for (point, &vertex) in net.iter_mut().zip(support) {
+            if vertex != PHANTOM {
+                *point = self.points[vertex as usize];
+            }
+        }
+        // A point beyond a sharp edge mirrors the inner row at the edge: rows first, then columns, which fills corners.
+        let phantom = |i, j| support[slot(i, j)] == PHANTOM;
+        let mut mirror = |to: (isize, isize), step: (isize, isize)| {
+            let at = |k: isize| slot(to.0 + k * step.0, to.1 + k * step.1);
+            net[at(0)] = 2.0 * net[at(1)] - net[at(2)];
+        };
+        for (j, step) in [(-1, 1), (2, -1)] {
+            if phantom(0, j) {
+                (-1..=2).for_each(|i| mirror((i, j), (0, step)));
+            }
+        }
+        for (i, step) in [(-1, 1), (2, -1)] {
+            if phantom(i, 0) {
+                (-1..=2).for_each(|j| mirror((i, j), (step, 0)));
+            }
+        }
+        net
+    }
+
+    /// Control points of an irregular patch relative to s0, and s0.
+    fn irregular_net(&self, patch: usize, table: &ClassTable) -> (Vec<DVec3>, DVec3) {
+        let points: Vec<DVec3> =
+            self.patches.support(patch).iter().map(|&vertex| self.points[vertex as usize]).collect();
+        // Relative to the vertex first: world coordinates would cost digits.
+        let centre = points[0];
+        let offset = points.iter().zip(&table.limit).map(|(&p, &w)| w * (p - centre)).sum::<DVec3>();
+        let limit = centre + offset;
+        (points.into_iter().map(|p| (p - centre) - offset).collect(), limit)
+    }
+
+    /// Control net of a patch; `levels` (1 to [`LEVELS`](super::LEVELS)) levels of it where it is irregular.
+    pub fn net(&self, patch: usize, levels: usize) -> Net {
+        let Some(class) = self.class(patch) else {
+            return Net::Regular(self.regular_net(patch));
+        };
+        let table = &self.tables[class];
+        let (points, limit) = self.irregular_net(patch, table);
+        let levels = table.levels[..levels]
+            .iter()
+            .map(|matrix| std::array::from_fn(|row| combine(matrix.row(row), &points)))
+            .collect();
+        Net::Irregular { limit, lambda: table.lambda, levels }
+    }
+
+    /// Evaluates a patch at its local (u,v), each in [0,1]; derivatives by the local parameters.
+    ///
+    /// At the extraordinary vertex itself the derivatives are those of the innermost level: their limits are zero or
+    /// infinite unless lambda is 1/2.
+    pub fn evaluate(&self, patch: usize, uv: [f64; 2]) -> Jet {
+        let Some(class) = self.class(patch) else {
+            let net = self.regular_net(patch);
+            let [position, du, dv] = sum(&weights(uv), |k| net[k]);
+            return Jet { position, du, dv, normal: normal(du, dv) };
+        };
+        let table = &self.tables[class];
+        let (points, limit) = self.irregular_net(patch, table);
+        let window = Window::at(uv);
+        let matrix = &table.levels[(window.level as usize).min(table.levels.len()) - 1];
+        let [offset, du, dv] = sum(&weights(window.t), |k| combine(matrix.row(window.point(k)), &points));
+        let scale = table.lambda.powi(window.level as i32 - 1);
+        let stretch = 2f64.powi(window.level as i32) * scale;
+        let position = if uv == [0.0, 0.0] { limit } else { limit + scale * offset };
+        Jet { position, du: stretch * du, dv: stretch * dv, normal: normal(du, dv) }
+    }
+
+    /// Evaluates a ptex face at (u,v), each in [0,1]: the patch and the jet, derivatives by the ptex parameters; `None`
+    /// in a hole.
+    ///
+    /// # Panics
+    /// `ptex` is not below [`ptex_count`](Self::ptex_count).
+    pub fn evaluate_ptex(&self, ptex: u32, uv: [f64; 2]) -> Option<(usize, Jet)> {
+        let (patch, local) = self.locate(ptex, uv)?;
+        let Patch { rotation, depth, .. } = self.patches()[patch];
+        let jet = self.evaluate(patch, local);
+        let (du, dv) = match rotation {
+            0 => (jet.du, jet.dv),
+            1 => (-jet.dv, jet.du),
+            2 => (-jet.du, -jet.dv),
+            _ => (jet.dv, -jet.du),
+        };
+        let scale = f64::from(1u32 << depth);
+        Some((patch, Jet { du: scale * du, dv: scale * dv, ..jet }))
+    }
+}
+
+fn combine(weights: &[f64], points: &[DVec3]) -> DVec3 {
+    weights.iter().zip(points).map(|(&w, &p)| w * p).sum()
+}
+
+fn sum(weights: &[[f64; 3]; 16], point: impl Fn(usize) -> DVec3) -> [DVec3; 3] {
+    let mut out = [DVec3::ZERO; 3];
+    for (k, w) in weights.iter().enumerate() {
+        let p = point(k);
+        out.iter_mut().zip(w).for_each(|(x, &w)| *x += w * p);
+    }
+    out
+}
+
+/// Unit normal of a parametrisation; zero where the derivatives are parallel or vanish.
+fn normal(du: DVec3, dv: DVec3) -> DVec3 {
+    // Normalised first: the product of derivatives of tiny models would underflow.
+    du.normalize_or_zero().cross(dv.normalize_or_zero()).normalize_or_zero()
+}
