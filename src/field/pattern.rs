@@ -68,17 +68,42 @@ impl Pattern {
 }
 
 impl Picture {
+    /// The picture at half the size (rounded down, at least 1), averaged in linear light.
+    pub fn halved(&self) -> Picture {
+        let size = self.size.map(|n| (n / 2).max(1));
+        let mut rgba8 = Vec::with_capacity(4 * (size[0] * size[1]) as usize);
+        for k in 0..size[0] * size[1] {
+            let (x, y) = (k % size[0], k / size[0]);
+            let corners = [(0, 0), (1, 0), (0, 1), (1, 1)]
+                .map(|(i, j)| self.linear((2 * x + i).min(self.size[0] - 1), (2 * y + j).min(self.size[1] - 1)));
+            let mean = corners.into_iter().sum::<DVec3>() * 0.25;
+            rgba8.extend(mean.to_array().map(|c| (linear_to_srgb(c) * 255.0).round() as u8));
+            rgba8.push(255);
+        }
+        Picture { size, rgba8 }
+    }
+
+    /// A texel in linear RGB.
+    fn linear(&self, x: u32, y: u32) -> DVec3 {
+        let at = 4 * (y as usize * self.size[0] as usize + x as usize);
+        DVec3::from_array(std::array::from_fn(|c| srgb_to_linear(f64::from(self.rgba8[at + c]) / 255.0)))
+    }
+
     /// Nearest texel at texture coordinates (repeating), linear RGB.
     fn texel(&self, uv: DVec2) -> DVec3 {
-        let index = |x: f64, n: u32| ((x - x.floor()) * f64::from(n)).min(f64::from(n - 1)) as usize;
-        let at = 4 * (index(uv.y, self.size[1]) * self.size[0] as usize + index(uv.x, self.size[0]));
-        DVec3::from_array(std::array::from_fn(|c| srgb_to_linear(f64::from(self.rgba8[at + c]) / 255.0)))
+        let index = |x: f64, n: u32| ((x - x.floor()) * f64::from(n)).min(f64::from(n - 1)) as u32;
+        self.linear(index(uv.x, self.size[0]), index(uv.y, self.size[1]))
     }
 }
 
 /// Inverse of the sRGB transfer function (IEC 61966-2-1), 0 to 1.
-pub(crate) fn srgb_to_linear(x: f64) -> f64 {
+fn srgb_to_linear(x: f64) -> f64 {
     if x <= 0.04045 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }
+}
+
+/// The sRGB transfer function, 0 to 1.
+fn linear_to_srgb(x: f64) -> f64 {
+    if x <= 0.0031308 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 }
 }
 
 #[cfg(test)]

@@ -35,10 +35,7 @@ mod tests {
         let (eye, r) = (dvec3(5.0, -3.0, 4.0), dvec3(0.3, 0.7, 0.2));
         let normal = dvec3(0.1, -0.2, 1.0).normalize();
         let s = reflection_direction(r, normal, eye);
-        let expected = dvec2(
-            (s.cross(r).dot(DVec3::Y) + z0 * s.x) / s.z,
-            (r.cross(s).dot(DVec3::X) + z0 * s.y) / s.z,
-        );
+        let expected = dvec2((s.cross(r).dot(DVec3::Y) + z0 * s.x) / s.z, (r.cross(s).dot(DVec3::X) + z0 * s.y) / s.z);
         let hit = reflection(&light, r, normal, eye).unwrap();
         assert!((hit - expected).length() < 1e-12, "{hit} {expected}");
         assert_eq!(reflection(&light, r, -normal, eye), Some(hit));
