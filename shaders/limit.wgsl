@@ -5,7 +5,10 @@
 
 @fragment
 fn limit(@builtin(position) pixel: vec4f) -> Surface {
-    let at = vec2u(pixel.xy);
+    let at = in_tile(pixel.xy);
+    if is_outside(at) {
+        return background();
+    }
     let id = textureLoad(visible_patch, at, 0).x;
     if id == 0u {
         return background();

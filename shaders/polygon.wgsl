@@ -7,7 +7,10 @@
 
 @fragment
 fn polygon(@builtin(position) pixel: vec4f) -> Surface {
-    let at = vec2u(pixel.xy);
+    let at = in_tile(pixel.xy);
+    if is_outside(at) {
+        return background();
+    }
     let id = textureLoad(visible_patch, at, 0).x;
     if id == 0u {
         return background();

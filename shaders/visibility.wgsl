@@ -3,8 +3,17 @@
 
 @group(0) @binding(3) var<storage, read> views: array<PatchView>;
 @group(0) @binding(4) var<uniform> frame: Frame;
-// Patches in drawing order; the instance index counts in it.
+// Patches in drawing order, NO_PATCH where a group is not full.
 @group(0) @binding(5) var<storage, read> order: array<u32>;
+
+// One draw: an instance is a group of patches.
+struct Draw {
+    first: u32,
+    group_size: u32,
+    padding: vec2u,
+}
+
+@group(1) @binding(0) var<uniform> draw: Draw;
 
 struct Vertex {
     @builtin(position) clip: vec4f,
@@ -42,8 +51,11 @@ fn push_distance(c: vec3f, d: vec3f) -> f32 {
 }
 
 @vertex
-fn vertex(@location(0) uv: vec2f, @builtin(instance_index) instance: u32) -> Vertex {
-    let patch_id = order[instance];
+fn vertex(@location(0) uv: vec2f, @location(1) member: u32, @builtin(instance_index) group: u32) -> Vertex {
+    let patch_id = order[draw.first + group * draw.group_size + member];
+    if patch_id == NO_PATCH {
+        return Vertex(vec4f(2.0, 2.0, 0.0, 1.0), vec2f(0.0), 0u, vec3f(0.0), vec3f(0.0));
+    }
     let p = limit_point(patch_id, uv);
     let view = views[patch_id];
     var clip = view.clip + clip_direction(p.position);

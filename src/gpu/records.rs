@@ -22,6 +22,48 @@ pub struct PatchRecord {
     pub levels: u32,
 }
 
+/// A vertex of the proxy, as vertex attributes 0 and 1 of shaders/visibility.wgsl.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable, PartialEq)]
+pub struct ProxyVertex {
+    /// Patch-local parameters.
+    pub uv: [f32; 2],
+    /// Which patch of its group.
+    pub member: u32,
+}
+
+/// `Draw`, shaders/visibility.wgsl: which patches an instanced draw covers.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct DrawRecord {
+    /// First patch in the drawing order.
+    pub first: u32,
+    /// Patches an instance.
+    pub group_size: u32,
+    /// Zero.
+    pub padding: [u32; 2],
+}
+
+/// `Band`, shaders/shared/band.wgsl.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct BandRecord {
+    /// Row of the tile that the first row of the surface textures holds; -1 for the first band.
+    pub first: i32,
+    /// Rows of the tile.
+    pub rows: i32,
+    /// Zero.
+    pub padding: [i32; 2],
+}
+
+/// `Resolve`, shaders/resolve.wgsl.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct ResolveRecord {
+    /// Samples a pixel each way.
+    pub samples: i32,
+}
+
 /// `Scale`, shaders/shared/records.wgsl: lambda^(n-1) and 2^n lambda^(n-1).
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable, PartialEq)]
@@ -138,20 +180,18 @@ pub struct ShadeRecord {
     pub pattern: u32,
     /// Linear RGB of the background at the top of the picture.
     pub top: [f32; 3],
-    /// 1 / samples.
-    pub pixel: f32,
+    /// First row of the tile in the picture, in samples.
+    pub row: f32,
     /// Linear RGB of the background at the bottom.
     pub bottom: [f32; 3],
-    /// 1 / samples^2.
-    pub weight: f32,
+    /// Rows of the picture, in samples.
+    pub rows: f32,
     /// Unit vector up, world space.
     pub up: [f32; 3],
-    /// First row of the target in the picture.
-    pub row: f32,
+    /// Zero.
+    pub padding0: f32,
     /// From plane coordinates to texture coordinates.
     pub picture_scale: [f32; 2],
-    /// Rows of the picture.
-    pub rows: f32,
     /// Zero.
-    pub padding: f32,
+    pub padding1: [f32; 2],
 }

@@ -1,5 +1,6 @@
 //! WGSL sources: which files make up a pass, and the constants that Rust shares with them.
 
+use super::NO_PATCH;
 use crate::stam::{LEVELS, WINDOW_POINTS};
 
 /// Kind of a patch of 16 points.
@@ -46,6 +47,7 @@ const RECORDS: &str = include_str!("../../shaders/shared/records.wgsl");
 const LIMIT_POINT: &str = include_str!("../../shaders/shared/limit_point.wgsl");
 const FULLSCREEN: &str = include_str!("../../shaders/shared/fullscreen.wgsl");
 const SURFACE: &str = include_str!("../../shaders/shared/surface.wgsl");
+const BAND: &str = include_str!("../../shaders/shared/band.wgsl");
 const PATTERN: &str = include_str!("../../shaders/shared/pattern.wgsl");
 const REFLECTION: &str = include_str!("../../shaders/field/reflection.wgsl");
 
@@ -55,16 +57,16 @@ pub const VISIBILITY: Module =
 /// Exact surface per pixel.
 pub const LIMIT: Module = Module {
     name: "limit",
-    files: &[RECORDS, LIMIT_POINT, REFLECTION, SURFACE, FULLSCREEN, include_str!("../../shaders/limit.wgsl")],
+    files: &[RECORDS, LIMIT_POINT, REFLECTION, BAND, SURFACE, FULLSCREEN, include_str!("../../shaders/limit.wgsl")],
 };
 /// Interpolated surface per pixel.
 pub const POLYGON: Module = Module {
     name: "polygon",
-    files: &[RECORDS, REFLECTION, SURFACE, FULLSCREEN, include_str!("../../shaders/polygon.wgsl")],
+    files: &[RECORDS, REFLECTION, BAND, SURFACE, FULLSCREEN, include_str!("../../shaders/polygon.wgsl")],
 };
 /// Colour.
 pub const SHADE: Module =
-    Module { name: "shade", files: &[REFLECTION, PATTERN, FULLSCREEN, include_str!("../../shaders/shade.wgsl")] };
+    Module { name: "shade", files: &[REFLECTION, BAND, PATTERN, FULLSCREEN, include_str!("../../shaders/shade.wgsl")] };
 /// Linear sum to sRGB.
 pub const RESOLVE: Module =
     Module { name: "resolve", files: &[FULLSCREEN, include_str!("../../shaders/resolve.wgsl")] };
@@ -86,6 +88,7 @@ fn constants() -> String {
         ("WORKGROUP", WORKGROUP),
         ("WINDOW_POINTS", WINDOW_POINTS as u32),
         ("CENTRE_LEVEL", LEVELS as u32),
+        ("NO_PATCH", NO_PATCH),
     ];
     let mut text: String = counts.iter().map(|(name, value)| format!("const {name} = {value}u;\n")).collect();
     text.push_str(&format!("const PUSH = {PUSH:?};\n"));
