@@ -1,26 +1,8 @@
-//! Host twins of the structs in `shaders/`, field by field; `tests/shaders.rs` compares offsets with naga's layout.
+//! Host twins of the structs in `shaders/` (tables are textures, see [`tables`](super::tables)), field by field; `tests/shaders.rs` compares offsets with naga's layout.
 //!
 //! Lengths are in units of [`Tables::unit`](super::Tables::unit). Padding is explicit: `vec3f` aligns to 16 bytes.
 
 use bytemuck::{Pod, Zeroable};
-
-/// `PatchRecord`, shaders/shared/records.wgsl.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, Pod, Zeroable, PartialEq)]
-pub struct PatchRecord {
-    /// Limit normal at local (0,0) of an irregular patch.
-    pub normal: [f32; 3],
-    /// First f32 of the patch in the points.
-    pub first: u32,
-    /// [`KIND_REGULAR`](super::shader::KIND_REGULAR) or [`KIND_IRREGULAR`](super::shader::KIND_IRREGULAR).
-    pub kind: u32,
-    /// First [`Scale`] of the patch's class.
-    pub scales: u32,
-    /// Depth in the quadtree of the ptex face.
-    pub depth: u32,
-    /// Levels stored for an irregular patch.
-    pub levels: u32,
-}
 
 /// A vertex of the proxy, as vertex attributes 0 and 1 of shaders/visibility.wgsl.
 #[repr(C)]
@@ -62,30 +44,6 @@ pub struct BandRecord {
 pub struct ResolveRecord {
     /// Samples a pixel each way.
     pub samples: i32,
-}
-
-/// `Scale`, shaders/shared/records.wgsl: lambda^(n-1) and 2^n lambda^(n-1).
-#[repr(C)]
-#[derive(Debug, Clone, Copy, Pod, Zeroable, PartialEq)]
-pub struct Scale {
-    /// Of positions.
-    pub position: f32,
-    /// Of first derivatives.
-    pub derivative: f32,
-}
-
-/// `PatchView`, shaders/shared/records.wgsl.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct PatchView {
-    /// Clip-space x, y, w of the patch's origin.
-    pub clip: [f32; 3],
-    /// Zero.
-    pub padding0: f32,
-    /// Eye relative to the origin.
-    pub eye: [f32; 3],
-    /// Zero.
-    pub padding1: f32,
 }
 
 /// `Frame`, shaders/shared/records.wgsl.

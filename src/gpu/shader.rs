@@ -1,7 +1,7 @@
 //! WGSL sources: which files make up a pass, and the constants that Rust shares with them.
 
 use super::NO_PATCH;
-use crate::stam::{LEVELS, WINDOW_POINTS};
+use crate::stam::LEVELS;
 
 /// Kind of a patch of 16 points.
 pub const KIND_REGULAR: u32 = 0;
@@ -17,8 +17,12 @@ pub const PATTERN_CIRCLES: u32 = 2;
 pub const PATTERN_PICTURE: u32 = 3;
 /// Invocations in a workgroup of the compute passes.
 pub const WORKGROUP: u32 = 64;
-/// Highest level n with 2^-n a normal f32: the length of a class's [`Scale`](super::records::Scale) table.
+/// Highest level n with 2^-n a normal f32: the number of scales of a class.
 pub const SCALE_LEVELS: u32 = 126;
+/// Texels in a row of a table texture; the tables of the largest meshes then have some 10,000 rows.
+pub const TABLE_WIDTH: u32 = 4096;
+/// Texels of one level of an irregular patch: 9 rows of 4 points, x, y and z each.
+pub const LEVEL_TEXELS: u32 = 27;
 /// Distance in pixels by which the borders of proxy patches overlap: large against the rasteriser's grid of 1/256 pixel
 /// on which vertices that differ by rounding may land one step apart, small against a pixel.
 pub const PUSH: f32 = 0.1;
@@ -86,7 +90,8 @@ fn constants() -> String {
         ("PATTERN_CIRCLES", PATTERN_CIRCLES),
         ("PATTERN_PICTURE", PATTERN_PICTURE),
         ("WORKGROUP", WORKGROUP),
-        ("WINDOW_POINTS", WINDOW_POINTS as u32),
+        ("TABLE_WIDTH", TABLE_WIDTH),
+        ("LEVEL_TEXELS", LEVEL_TEXELS),
         ("CENTRE_LEVEL", LEVELS as u32),
         ("NO_PATCH", NO_PATCH),
     ];

@@ -1,6 +1,6 @@
 //! What to draw, and its f64-composed records for the shaders.
 
-use super::records::{FrameRecord, LightRecord, PatchView, ShadeRecord};
+use super::records::{FrameRecord, LightRecord, ShadeRecord};
 use super::shader::{PATTERN_CIRCLES, PATTERN_LATTICE, PATTERN_PICTURE, PATTERN_STRIPES};
 use super::{GpuError, Tables};
 use crate::field::{Camera, Field, Light, Pattern};
@@ -126,14 +126,17 @@ impl View {
         }
     }
 
-    /// Every patch as this camera sees it; composed in f64, then rounded (design.md 4, "Projection").
-    pub(super) fn patch_views(&self, tables: &Tables) -> Vec<PatchView> {
+    /// Every patch as this camera sees it, composed in f64, then rounded (design.md 4, "Projection"): clip-space x, y, w of
+    /// its origin; the eye relative to its origin.
+    pub(super) fn patch_views(&self, tables: &Tables) -> Vec<[[f32; 4]; 2]> {
         let axes = self.camera.axes();
         let unit = tables.unit();
         let one = |origin: &DVec3| {
             let d = (*origin - self.camera.eye) / unit;
             let clip = [axes.scale[0] * axes.right.dot(d), axes.scale[1] * axes.up.dot(d), axes.forward.dot(d)];
-            PatchView { clip: clip.map(|x| x as f32), padding0: 0.0, eye: (-d).as_vec3().to_array(), padding1: 0.0 }
+            let [x, y, w] = clip.map(|x| x as f32);
+            let [ex, ey, ez] = (-d).as_vec3().to_array();
+            [[x, y, w, 0.0], [ex, ey, ez, 0.0]]
         };
         tables.origins.par_iter().map(one).collect()
     }

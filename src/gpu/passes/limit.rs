@@ -26,8 +26,9 @@ pub fn run(
     band: &Band,
 ) -> Result<(), GpuError> {
     let pipeline = pipeline(passes, device, scene.view.pipeline);
+    let [records, points, scales, patch_views] = scene.table_views();
     let mut resources = vec![
-        (3, scene.patch_views.as_entire_binding()),
+        (3, TextureView(&patch_views)),
         (4, scene.light.as_entire_binding()),
         (5, band.record.as_entire_binding()),
     ];
@@ -35,9 +36,9 @@ pub fn run(
     let inputs: Vec<_> = match &targets.proxy {
         Some(proxy) => proxy.iter().map(whole).collect(),
         None => {
-            resources.push((0, scene.tables.records.as_entire_binding()));
-            resources.push((1, scene.tables.points.as_entire_binding()));
-            resources.push((2, scene.tables.scales.as_entire_binding()));
+            resources.push((0, TextureView(&records)));
+            resources.push((1, TextureView(&points)));
+            resources.push((2, TextureView(&scales)));
             vec![whole(&targets.uv)]
         }
     };

@@ -46,7 +46,7 @@ impl Passes {
 pub(super) struct Scene<'a> {
     pub tables: &'a Tables,
     pub view: &'a View,
-    pub patch_views: wgpu::Buffer,
+    pub patch_views: wgpu::Texture,
     pub light: wgpu::Buffer,
     pub proxy: visibility::ProxyBuffers,
     pub picture: shade::PictureTexture,
@@ -58,11 +58,22 @@ impl<'a> Scene<'a> {
         Ok(Scene {
             tables,
             view,
-            patch_views: device.buffer("the views of the patches", &view.patch_views(tables), BufferUsages::STORAGE)?,
+            patch_views: {
+                let texels = view.patch_views(tables);
+                device.table("the views of the patches", texels.as_flattened(), SURFACE_FORMAT)?
+            },
             light: device.buffer("the light", &[view.light_record(tables)], BufferUsages::UNIFORM)?,
             proxy: visibility::ProxyBuffers::new(device, &proxy)?,
             picture: shade::PictureTexture::new(device, view)?,
         })
+    }
+}
+
+impl Scene<'_> {
+    /// Texture views of the tables and of the patch views, at bindings 0 to 3.
+    fn table_views(&self) -> [wgpu::TextureView; 4] {
+        let [records, points, scales] = self.tables.views();
+        [records, points, scales, whole(&self.patch_views)]
     }
 }
 

@@ -7,6 +7,7 @@ use crate::gpu::proxy::{Draw, Proxy};
 use crate::gpu::records::{DrawRecord, ProxyVertex};
 use crate::gpu::view::Tile;
 use crate::gpu::{GpuError, Pipeline, shader::VISIBILITY};
+use wgpu::BindingResource::TextureView;
 use wgpu::BufferUsages;
 
 /// The proxy tessellation on the adapter.
@@ -89,14 +90,15 @@ pub fn run(
     let pipeline = pipeline(passes, device, scene.view.pipeline);
     let frame = scene.view.frame_record(scene.tables, tile);
     let frame = device.buffer("the frame", &[frame], BufferUsages::UNIFORM)?;
+    let [records, points, scales, patch_views] = scene.table_views();
     let group = bind(
         device,
         pipeline.get_bind_group_layout(0),
         &[
-            (0, scene.tables.records.as_entire_binding()),
-            (1, scene.tables.points.as_entire_binding()),
-            (2, scene.tables.scales.as_entire_binding()),
-            (3, scene.patch_views.as_entire_binding()),
+            (0, TextureView(&records)),
+            (1, TextureView(&points)),
+            (2, TextureView(&scales)),
+            (3, TextureView(&patch_views)),
             (4, frame.as_entire_binding()),
             (5, scene.proxy.order.as_entire_binding()),
         ],
