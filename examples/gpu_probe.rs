@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let tables = gpu.upload(&surface)?;
     println!("upload {:?}, {} bytes", start.elapsed(), tables.size());
     let bounds = surface.bounds().unwrap();
-    let mut camera = Camera::fit(bounds, [size, size], up);
+    let mut camera = Camera::fit(&mesh.points, [size, size], up);
     if let Some(zoom) = get("zoom") {
         camera.fov /= zoom.parse::<f64>()?;
     }
