@@ -20,8 +20,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("gpu {:?} {}", start.elapsed(), gpu.adapter());
     let tables = gpu.upload(&surface)?;
     println!("upload {:?}, {} bytes", start.elapsed(), tables.size());
-    let bounds = surface.bounds().unwrap();
-    let mut camera = Camera::fit(&mesh.points, [size, size], up);
+    let points = outline(&surface);
+    let bounds = bounds(&points);
+    let mut camera = Camera::fit(&points, [size, size], up);
     if let Some(zoom) = get("zoom") {
         camera.fov /= zoom.parse::<f64>()?;
     }
@@ -32,7 +33,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let light = Light::fit(bounds, camera.eye, up);
     let mut view = View::new(camera, light);
     if let Some(l) = get("level") {
-        view.proxy_level = l.parse()?;
+        view.proxy_level = Some(l.parse()?);
     }
     if let Some(l) = get("samples") {
         view.samples = l.parse()?;

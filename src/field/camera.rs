@@ -1,5 +1,6 @@
 //! A pinhole camera in f64.
 
+use crate::stam::LimitSurface;
 use glam::{DVec3, dvec3};
 
 /// Vertical field of view of a fitted camera, in degrees: a short telephoto lens, as product photographers use.
@@ -34,8 +35,7 @@ pub struct Axes {
 }
 
 impl Camera {
-    /// The three-quarter view: from the front left and above, so far away that all `points` (control points will do: the
-    /// surface lies inside their hull) fit into the picture. `up` is the vertical of the model.
+    /// The three-quarter view: from the front left and above, so far away that all `points` (see [`outline`]) fit into the picture. `up` is the vertical of the model.
     pub fn fit(points: &[DVec3], size: [u32; 2], up: DVec3) -> Camera {
         let up = up.try_normalize().unwrap_or(DVec3::Z);
         let [first, second] = horizontal_axes(bounds(points), up);
@@ -135,8 +135,21 @@ fn handed(first: DVec3, up: DVec3) -> f64 {
     if second.dot(front) < 0.0 { -1.0 } else { 1.0 }
 }
 
+/// Points spread over a surface, some 20,000 at most: what [`Camera::fit`] needs to know of it.
+pub fn outline(surface: &LimitSurface) -> Vec<DVec3> {
+    const POINTS: f64 = 20_000.0;
+    let faces = surface.ptex_count();
+    let side = (POINTS / faces.max(1) as f64).sqrt().clamp(2.0, 9.0) as u32;
+    let stride = (faces as f64 * f64::from(side * side) / POINTS).ceil().max(1.0) as usize;
+    let at = |k: u32| f64::from(k) / f64::from(side - 1);
+    let of_face = |ptex: usize| {
+        (0..side * side).filter_map(move |k| surface.evaluate_ptex(ptex as u32, [at(k % side), at(k / side)]))
+    };
+    (0..faces).step_by(stride).flat_map(of_face).map(|(_, jet)| jet.position).collect()
+}
+
 /// The box round points; the unit box if there are none.
-fn bounds(points: &[DVec3]) -> [DVec3; 2] {
+pub fn bounds(points: &[DVec3]) -> [DVec3; 2] {
     let grow = |bounds: Option<[DVec3; 2]>, &p: &DVec3| Some(bounds.map_or([p, p], |[a, b]| [a.min(p), b.max(p)]));
     points.iter().fold(None, grow).unwrap_or([DVec3::ZERO, DVec3::ONE])
 }

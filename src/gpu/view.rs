@@ -60,8 +60,9 @@ pub struct View {
     pub pattern: Pattern,
     /// How position and normal come to a pixel.
     pub pipeline: Pipeline,
-    /// Level of the proxy tessellation, 0 to [`MAX_PROXY_LEVEL`]: 2^level parts a ptex face.
-    pub proxy_level: u32,
+    /// Level of the proxy tessellation, 0 to [`MAX_PROXY_LEVEL`]: 2^level parts a ptex face. `None`: as fine as the picture
+    /// asks for ([`View::proxy_level_for`]).
+    pub proxy_level: Option<u32>,
     /// Samples a pixel each way, 1 to [`MAX_SAMPLES`].
     pub samples: u32,
     /// Colours.
@@ -76,7 +77,7 @@ impl View {
             field: Field::Reflection(light),
             pattern: Pattern::Stripes { width: 0.42 },
             pipeline: Pipeline::Limit,
-            proxy_level: 4,
+            proxy_level: None,
             samples: 2,
             palette: Palette::default(),
         }
@@ -104,8 +105,8 @@ impl View {
         if !(fov > 0.0 && fov < 180.0) {
             return fail(format!("field of view {fov}: must be between 0 and 180 degrees"));
         }
-        if self.proxy_level > MAX_PROXY_LEVEL {
-            return fail(format!("proxy level {}: must be 0 to {MAX_PROXY_LEVEL}", self.proxy_level));
+        if let Some(level) = self.proxy_level.filter(|&level| level > MAX_PROXY_LEVEL) {
+            return fail(format!("proxy level {level}: must be 0 to {MAX_PROXY_LEVEL}"));
         }
         if !(1..=MAX_SAMPLES).contains(&self.samples) {
             return fail(format!("{} samples: must be 1 to {MAX_SAMPLES}", self.samples));
@@ -123,6 +124,18 @@ impl View {
             }
             _ => Ok(()),
         }
+    }
+
+    /// The level of the proxy: as asked, or such that a face of average size has cells of at most 4 pixels. An edge of
+    /// that length on a silhouette with a radius of 20 pixels is 4^2 / (8 20) = 0.1 pixel off the curve.
+    pub fn proxy_level_for(&self, tables: &Tables) -> u32 {
+        const CELL: f64 = 4.0;
+        self.proxy_level.unwrap_or_else(|| {
+            let pixels: f64 = self.camera.size.map(f64::from).iter().product();
+            // Half of the picture, seen half from the front and half from the back.
+            let face = (pixels / tables.faces().max(1.0)).sqrt();
+            (face / CELL).log2().ceil().clamp(1.0, 7.0) as u32
+        })
     }
 
     /// Every patch as this camera sees it, composed in f64, then rounded (design.md 4, "Projection"): clip-space x, y, w of
@@ -153,7 +166,7 @@ impl View {
             clip_y: row(axes.up * axes.scale[1]),
             focal: (axes.scale[1] * h * 0.5) as f32,
             clip_w: row(axes.forward),
-            proxy_level: self.proxy_level,
+            proxy_level: self.proxy_level_for(tables),
             scale: [(w / tw) as f32, (h / th) as f32],
             shift: [(w / tw - 2.0 * x / tw - 1.0) as f32, (1.0 - h / th + 2.0 * y / th) as f32],
             size: [tw as f32, th as f32],

@@ -54,7 +54,7 @@ pub(super) struct Scene<'a> {
 
 impl<'a> Scene<'a> {
     pub fn new(device: &Device, tables: &'a Tables, view: &'a View) -> Result<Self, GpuError> {
-        let proxy = Proxy::new(&tables.cells, view.proxy_level);
+        let proxy = Proxy::new(&tables.cells, view.proxy_level_for(tables));
         Ok(Scene {
             tables,
             view,
