@@ -91,8 +91,12 @@ osd_status osd_refiner_level(const osd_refiner *refiner, int32_t level, const os
 
 /* points: 3 * vertices of level 0; out: 3 * vertices of levels 0, 1, ... one after the other. */
 osd_status osd_refiner_interpolate(const osd_refiner *refiner, const double *points, double *out);
-/* Limit positions by OpenSubdiv's masks. points and out: 3 * vertices of the last level (uniform refinement). */
-osd_status osd_refiner_limit(const osd_refiner *refiner, const double *points, double *out);
+/*
+ * Limit positions and two tangents by OpenSubdiv's masks. All arrays: 3 * vertices of the last level (uniform
+ * refinement).
+ */
+osd_status osd_refiner_limit(const osd_refiner *refiner, const double *points, double *positions, double *tangents_1,
+                             double *tangents_2);
 
 /* ---- reference evaluators ---------------------------------------------------------------------------------------- */
 

@@ -175,6 +175,11 @@ impl Rows {
 }
 
 impl ClassTable {
+    /// Memory that the matrices take.
+    pub fn bytes(&self) -> usize {
+        self.levels.iter().map(|matrix| size_of_val(matrix.values())).sum()
+    }
+
     /// Builds the matrices of a class.
     pub fn new(class: RingClass) -> Self {
         let rows = Rows::new(class);

@@ -181,16 +181,21 @@ impl LimitSurface {
     /// `ptex` is not below [`ptex_count`](Self::ptex_count).
     pub fn evaluate_ptex(&self, ptex: u32, uv: [f64; 2]) -> Option<(usize, Jet)> {
         let (patch, local) = self.locate(ptex, uv)?;
-        let Patch { rotation, depth, .. } = self.patches()[patch];
-        let jet = self.evaluate(patch, local);
-        let (du, dv) = match rotation {
+        Some((patch, self.patches()[patch].jet_to_ptex(self.evaluate(patch, local))))
+    }
+}
+
+impl Patch {
+    /// Turns a jet by patch-local parameters into one by the parameters of the ptex face.
+    pub fn jet_to_ptex(&self, jet: Jet) -> Jet {
+        let (du, dv) = match self.rotation {
             0 => (jet.du, jet.dv),
             1 => (-jet.dv, jet.du),
             2 => (-jet.du, -jet.dv),
             _ => (jet.dv, -jet.du),
         };
-        let scale = f64::from(1u32 << depth);
-        Some((patch, Jet { du: scale * du, dv: scale * dv, ..jet }))
+        let scale = f64::from(1u32 << self.depth);
+        Jet { du: scale * du, dv: scale * dv, ..jet }
     }
 }
 
