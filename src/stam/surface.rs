@@ -146,9 +146,8 @@ impl LimitSurface {
         };
         let table = &self.tables[class];
         let (points, limit) = self.irregular_net(patch, table);
-        let levels = table.levels[..levels]
-            .iter()
-            .map(|matrix| std::array::from_fn(|row| combine(matrix.row(row), &points)))
+        let levels = (1..=levels)
+            .map(|level| std::array::from_fn(|point| combine(table.weights(level, point), &points)))
             .collect();
         Net::Irregular { limit, lambda: table.lambda, levels }
     }
@@ -166,8 +165,9 @@ impl LimitSurface {
         let table = &self.tables[class];
         let (points, limit) = self.irregular_net(patch, table);
         let window = Window::at(uv);
-        let matrix = &table.levels[(window.level as usize).min(table.levels.len()) - 1];
-        let [offset, du, dv] = sum(&weights(window.t), |k| combine(matrix.row(window.point(k)), &points));
+        let level = (window.level as usize).min(table.level_count());
+        let point = |k| combine(table.weights(level, window.point(k)), &points);
+        let [offset, du, dv] = sum(&weights(window.t), point);
         let scale = table.lambda.powi(window.level as i32 - 1);
         let stretch = 2f64.powi(window.level as i32) * scale;
         let position = if uv == [0.0, 0.0] { limit } else { limit + scale * offset };
