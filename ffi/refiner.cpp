@@ -183,6 +183,7 @@ osd_status osd_refiner_interpolate(const osd_refiner *handle, const double *poin
 osd_status osd_refiner_limit(const osd_refiner *handle, const double *points, double *positions, double *tangents_1,
                              double *tangents_2) {
     return guard([&] {
+        require(handle->refiner->IsUniform(), "limit masks need uniform refinement");
         Far::PrimvarRefinerReal<double> const primvar(*handle->refiner);
         Point const *source = reinterpret_cast<Point const *>(points);
         Point *limit = reinterpret_cast<Point *>(positions);

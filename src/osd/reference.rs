@@ -90,6 +90,16 @@ impl Batch {
 ///
 /// Exact on regular patches, and at dyadic points i/2^k, k <= isolation; end caps approximate elsewhere. The options
 /// are those of design.md 3.4: infinitely sharp patches on, legacy sharp corners and single-crease patches off.
+///
+/// Evaluation borrows the table mutably: one evaluation at a time.
+/// ```compile_fail
+/// fn shared<T: Sync>() {}
+/// shared::<catoptric::osd::Far>();
+/// ```
+/// ```compile_fail
+/// use catoptric::osd::{Far, Reference};
+/// fn twice(far: &Far) { far.evaluate(&[]).unwrap(); }
+/// ```
 #[derive(Debug)]
 pub struct Far(NonNull<raw::osd_far>);
 
@@ -131,6 +141,16 @@ impl Reference for Far {
 }
 
 /// Owner of a `Bfr::RefinerSurfaceFactory` in double precision.
+///
+/// The factory's cache is not thread-safe: one thread, one evaluation at a time.
+/// ```compile_fail
+/// fn shared<T: Sync>() {}
+/// shared::<catoptric::osd::Bfr>();
+/// ```
+/// ```compile_fail
+/// fn sent<T: Send>() {}
+/// sent::<catoptric::osd::Bfr>();
+/// ```
 #[derive(Debug)]
 pub struct Bfr(NonNull<raw::osd_bfr>);
 

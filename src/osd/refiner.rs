@@ -72,6 +72,17 @@ impl Level {
 }
 
 /// Owner of a `Far::TopologyRefiner`.
+///
+/// It may move to another thread, but not be shared: OpenSubdiv makes no promise about concurrent reads.
+/// ```compile_fail
+/// fn shared<T: Sync>() {}
+/// shared::<catoptric::osd::Refiner>();
+/// ```
+/// It is released once, so it cannot be copied.
+/// ```compile_fail
+/// fn copied<T: Clone>() {}
+/// copied::<catoptric::osd::Refiner>();
+/// ```
 #[derive(Debug)]
 pub struct Refiner {
     handle: NonNull<raw::osd_refiner>,
@@ -218,7 +229,7 @@ impl Refiner {
     /// darts and interior vertices of valence 2 (3.5.0). Tangents are exact for smooth vertices only.
     ///
     /// # Errors
-    /// OpenSubdiv reports an error, as it does after adaptive refinement.
+    /// The refinement is adaptive, or OpenSubdiv reports an error.
     ///
     /// # Panics
     /// `points` is not one point for each vertex of the last level.
