@@ -1,7 +1,7 @@
 //! Tier `endcap`: how far OpenSubdiv's default end caps are from the exact limit. It reports, and never fails.
 
 use super::bin::{Bins, Difference, Key, Sample, Tolerance, angle_deg};
-use super::regular::scatter;
+use super::regular::scattered;
 use super::{Subject, VerifyError};
 use crate::osd::{Answer, Bfr, Reference};
 
@@ -9,11 +9,7 @@ const PER_FACE: usize = 64;
 const BUDGET: usize = 400_000;
 
 pub(super) fn run(subject: &Subject<'_>, bins: &mut Bins) -> Result<(), VerifyError> {
-    let samples: Vec<_> = subject
-        .faces(PER_FACE, BUDGET)
-        .flat_map(|face| (0..PER_FACE as u32).map(move |i| (face, scatter(face.wrapping_add(i)))))
-        .map(|(face, [u, v])| (face, u, v))
-        .collect();
+    let samples = scattered(subject, PER_FACE, BUDGET);
     let answers = Bfr::new(subject.mesh, Bfr::DEFAULT_LEVELS)?.evaluate(&samples)?;
     for (&(face, u, v), answer) in samples.iter().zip(&answers).filter(|(_, a)| a.answer == Answer::EndCap) {
         let Some((patch, jet)) = subject.surface.evaluate_ptex(face, [u, v]) else { continue };

@@ -56,13 +56,44 @@ impl Subject<'_> {
 /// The mesh is refused, a reference evaluator fails, or the GPU does.
 pub fn verify(mesh: &SubdivMesh, gpu: &Gpu, size: [u32; 2]) -> Result<MeshReport, VerifyError> {
     let surface = LimitSurface::new(mesh)?;
-    let subject = Subject { mesh, surface: &surface };
-    let mut bins = Bins::new(surface.diagonal());
-    vertex::run(&subject, &mut bins)?;
-    let mut far = dyadic::reference(&subject)?;
-    dyadic::run(&subject, &mut far, &mut bins)?;
-    regular::run(&subject, &mut far, &mut bins)?;
-    fragment::run(&subject, &mut far, gpu, size, &mut bins)?;
-    endcap::run(&subject, &mut bins)?;
+    let bins = tiers(&Subject { mesh, surface: &surface }, gpu, size)?;
     Ok(MeshReport::new(mesh, &surface, bins))
+}
+
+fn tiers(subject: &Subject<'_>, gpu: &Gpu, size: [u32; 2]) -> Result<Bins, VerifyError> {
+    let mut bins = Bins::new(subject.surface.diagonal());
+    vertex::run(subject, &mut bins)?;
+    let mut far = dyadic::reference(subject)?;
+    dyadic::run(subject, &mut far, &mut bins)?;
+    regular::run(subject, &mut far, &mut bins)?;
+    fragment::run(subject, &mut far, gpu, size, &mut bins)?;
+    endcap::run(subject, &mut bins)?;
+    Ok(bins)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh;
+    use glam::DVec3;
+
+    /// Every check can fail: a control point moved by 1e-7 of the diagonal, in the surface but not in the reference,
+    /// turns up in every tier that judges f64, and one of 1e-5 in the fragments.
+    #[test]
+    fn planted_errors_are_caught_by_every_tier() {
+        let mesh = mesh::sample();
+        let gpu = Gpu::new().expect("the fragment tier needs an adapter");
+        for (shift, expected) in [(1e-7, &["vertex", "dyadic", "regular"][..]), (1e-4, &["fragment"][..])] {
+            let mut moved = mesh.clone();
+            moved.points.iter_mut().step_by(7).for_each(|p| *p += DVec3::splat(shift * mesh.diagonal()));
+            let surface = LimitSurface::new(&moved).expect("the sample is valid");
+            let bins = tiers(&Subject { mesh: &mesh, surface: &surface }, &gpu, [64, 64]).expect("it runs");
+            let report = MeshReport::new(&mesh, &surface, bins);
+            assert!(!report.pass);
+            for tier in expected {
+                let failed = report.tiers.iter().any(|row| row.tier == *tier && !row.pass);
+                assert!(failed, "{tier} missed an error of {shift:e}");
+            }
+        }
+    }
 }
