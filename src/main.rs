@@ -1,2 +1,5 @@
-//! catoptric
-fn main() {}
+//! The `catoptric` program: see [`catoptric::cli`].
+
+fn main() -> std::process::ExitCode {
+    catoptric::cli::run()
+}
