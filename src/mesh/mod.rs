@@ -1,6 +1,10 @@
 //! What comes in: a control mesh with Catmull-Clark features, validated before OpenSubdiv sees it.
 
+mod sample;
+
 use glam::DVec3;
+
+pub use sample::sample;
 
 /// What the subdivision rules do at the boundary of the mesh (OpenSubdiv's `VtxBoundaryInterpolation`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
