@@ -1,1 +1,165 @@
-//! The fragment pipeline.
+//! The fragment pipeline: limit surface in, picture out, on a headless Vulkan adapter.
+//!
+//! # Theory
+//! Yasui & Kanai 2004, sec. 4: rasterise an approximation of the surface to find which patch, at which (u,v), each pixel
+//! sees; evaluate the exact limit there; shade with the light that the exact normal mirrors.
+//!
+//! # Changes
+//! Normalised tables ([`tables`], design.md 3.2) instead of plain points, patch-local f32 coordinates with matrices
+//! composed in f64, a crack-free proxy, and patterns filtered to the pixel.
+//!
+//! # Practice
+//! [`Gpu::new`] opens the adapter, [`Gpu::upload`] makes [`Tables`] of a surface; then [`Gpu::render`] makes pictures,
+//! [`Gpu::inspect`] reads back what every pixel saw, [`Gpu::evaluate`] evaluates samples. All three run the same
+//! `limit_point` in WGSL.
+
+mod device;
+mod frame;
+mod passes;
+mod proxy;
+pub mod records;
+pub mod shader;
+pub mod tables;
+mod view;
+
+pub use device::AdapterChoice;
+pub use frame::{Frame, NO_PATCH, SurfaceImage, Timings};
+pub use tables::{PatchNet, PatchSource, Tables};
+pub use view::{MAX_PROXY_LEVEL, MAX_SAMPLES, Palette, Pipeline, View};
+
+use crate::stam::{Jet, LimitSurface};
+use device::Device;
+use passes::Passes;
+use std::time::{Duration, Instant};
+
+/// Why the GPU could not do its work.
+#[derive(Debug, thiserror::Error)]
+pub enum GpuError {
+    /// There is no Vulkan adapter, not even a software one.
+    #[error("no usable GPU adapter: install mesa-vulkan-drivers")]
+    NoAdapter,
+    /// The adapter failed.
+    #[error("GPU adapter {adapter}: {message}")]
+    Device {
+        /// Adapter name.
+        adapter: String,
+        /// What wgpu said.
+        message: String,
+    },
+    /// A table exceeds what the adapter can bind.
+    #[error("{what} take {size} bytes, but this adapter binds at most {limit} bytes at once: use a smaller mesh")]
+    TooLarge {
+        /// Which buffer.
+        what: &'static str,
+        /// Its size in bytes.
+        size: u64,
+        /// The adapter's limit in bytes.
+        limit: u64,
+    },
+    /// A view that cannot be drawn.
+    #[error("{0}")]
+    View(String),
+    /// A sample names a patch that does not exist.
+    #[error("sample {sample}: patch {patch} does not exist, the surface has {patches}")]
+    Patch {
+        /// Index of the sample.
+        sample: usize,
+        /// Its patch.
+        patch: u32,
+        /// Number of patches.
+        patches: usize,
+    },
+}
+
+/// A point of a patch.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sample {
+    /// Patch index, as in [`LimitSurface::patches`].
+    pub patch: u32,
+    /// Patch-local parameters, each in [0,1]; clamped.
+    pub uv: [f32; 2],
+}
+
+/// An open adapter with its compiled passes.
+#[derive(Debug)]
+pub struct Gpu {
+    device: Device,
+    passes: Passes,
+    startup: Duration,
+}
+
+impl Gpu {
+    /// Opens the adapter that the environment asks for ([`AdapterChoice::from_env`]).
+    ///
+    /// # Errors
+    /// [`GpuError::NoAdapter`] where none is installed or wanted, [`GpuError::Device`] where it does not open.
+    pub fn new() -> Result<Gpu, GpuError> {
+        Gpu::with(&AdapterChoice::from_env())
+    }
+
+    /// Opens an adapter.
+    ///
+    /// # Errors
+    /// As [`Gpu::new`].
+    pub fn with(choice: &AdapterChoice) -> Result<Gpu, GpuError> {
+        let start = Instant::now();
+        let device = Device::open(choice)?;
+        Ok(Gpu { device, passes: Passes::default(), startup: start.elapsed() })
+    }
+
+    /// Name of the adapter.
+    pub fn adapter(&self) -> &str {
+        &self.device.info.name
+    }
+
+    /// Whether the adapter is a CPU.
+    pub fn is_software(&self) -> bool {
+        self.device.info.device_type == wgpu::DeviceType::Cpu
+    }
+
+    /// How long it took to open the adapter.
+    pub fn startup(&self) -> Duration {
+        self.startup
+    }
+
+    /// Builds the tables of a surface and puts them on the adapter.
+    ///
+    /// # Errors
+    /// [`GpuError::TooLarge`] where a table exceeds the adapter's binding limit.
+    pub fn upload(&self, surface: &LimitSurface) -> Result<Tables, GpuError> {
+        self.upload_patches(surface)
+    }
+
+    /// The same for patches from any source.
+    ///
+    /// # Errors
+    /// As [`Gpu::upload`].
+    pub fn upload_patches(&self, source: &(impl PatchSource + ?Sized)) -> Result<Tables, GpuError> {
+        tables::upload(&self.device, source)
+    }
+
+    /// Evaluates the limit at samples, in f32 relative to each patch's origin. Positions come back in world space,
+    /// derivatives by the patch-local parameters.
+    ///
+    /// # Errors
+    /// [`GpuError::Patch`] for a patch that does not exist.
+    pub fn evaluate(&self, tables: &Tables, samples: &[Sample]) -> Result<Vec<Jet>, GpuError> {
+        passes::evaluate::run(&self.device, &self.passes, tables, samples)
+    }
+
+    /// Draws a picture.
+    ///
+    /// # Errors
+    /// [`GpuError::View`] for a view that cannot be drawn.
+    pub fn render(&self, tables: &Tables, view: &View) -> Result<Frame, GpuError> {
+        frame::render(&self.device, &self.passes, tables, view)
+    }
+
+    /// What every pixel's centre sees: patch, (u,v), position, normal and field.
+    ///
+    /// # Errors
+    /// As [`Gpu::render`].
+    pub fn inspect(&self, tables: &Tables, view: &View) -> Result<SurfaceImage, GpuError> {
+        frame::inspect(&self.device, &self.passes, tables, view)
+    }
+}

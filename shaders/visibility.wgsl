@@ -1,0 +1,80 @@
+// Rasterises the proxy tessellation: which patch, at which (u,v), each pixel sees (Yasui & Kanai 2004, sec. 4.4, "face id
+// and parameters"). Host side: passes/visibility.rs.
+
+@group(0) @binding(3) var<storage, read> views: array<PatchView>;
+@group(0) @binding(4) var<uniform> frame: Frame;
+// Patches in drawing order; the instance index counts in it.
+@group(0) @binding(5) var<storage, read> order: array<u32>;
+
+struct Vertex {
+    @builtin(position) clip: vec4f,
+    @location(0) uv: vec2f,
+    @location(1) @interpolate(flat, either) patch_id: u32,
+    @location(2) position: vec3f,
+    @location(3) normal: vec3f,
+}
+
+struct Visible {
+    // Patch id + 1: 0 is the background.
+    @location(0) patch_id: u32,
+    @location(1) uv: vec2f,
+}
+
+struct Polygon {
+    @location(0) patch_id: u32,
+    @location(1) uv: vec2f,
+    @location(2) position: vec4f,
+    @location(3) normal: vec4f,
+}
+
+fn clip_direction(d: vec3f) -> vec3f {
+    return vec3f(dot(frame.clip_x, d), dot(frame.clip_y, d), dot(frame.clip_w, d));
+}
+
+// How far to move along the unit tangent `d` so that the vertex at clip-space c moves by PUSH pixels. Where the tangent
+// is seen end on, not more than 10 times what it takes face on.
+fn push_distance(c: vec3f, d: vec3f) -> f32 {
+    let w = max(c.z, frame.near);
+    let e = clip_direction(d);
+    let speed = length((e.xy - c.xy * (e.z / w)) * frame.size * frame.scale) * 0.5 / w;
+    let head_on = frame.focal / w;
+    return PUSH / max(speed, 0.1 * head_on);
+}
+
+@vertex
+fn vertex(@location(0) uv: vec2f, @builtin(instance_index) instance: u32) -> Vertex {
+    let patch_id = order[instance];
+    let p = limit_point(patch_id, uv);
+    let view = views[patch_id];
+    var clip = view.clip + clip_direction(p.position);
+    // Neighbours compute the vertices that they share from different points, so these differ by rounding, and pixels
+    // could fall in between. Border vertices therefore move outwards by a fraction of a pixel; (u,v) moves along (the
+    // limit pass clamps it), so that inside the patch nothing shifts.
+    let side = vec2f(select(0.0, 1.0, uv.x == 1.0) - select(0.0, 1.0, uv.x == 0.0),
+        select(0.0, 1.0, uv.y == 1.0) - select(0.0, 1.0, uv.y == 0.0));
+    let tu = unit_or_zero(p.du);
+    let tv = unit_or_zero(p.dv);
+    let push = side * vec2f(push_distance(clip, tu), push_distance(clip, tv));
+    clip += clip_direction(tu * push.x + tv * push.y);
+    // A quarter of a proxy cell at most; none at an extraordinary vertex, where derivatives vanish or blow up.
+    let cell = 0.25 * exp2(-f32(max(frame.proxy_level, patches[patch_id].depth) - patches[patch_id].depth));
+    let speed = max(vec2f(length(p.du), length(p.dv)), vec2f(1e-30));
+    var shift = clamp(push / speed, vec2f(-cell), vec2f(cell));
+    if patches[patch_id].kind == KIND_IRREGULAR && all(uv == vec2f(0.0)) {
+        shift = vec2f(0.0);
+    }
+    let xy = clip.xy * frame.scale + frame.shift * clip.z;
+    return Vertex(vec4f(xy, frame.near, clip.z), uv + shift, patch_id, p.position, p.normal);
+}
+
+@fragment
+fn visible(v: Vertex) -> Visible {
+    return Visible(v.patch_id + 1u, clamp(v.uv, vec2f(0.0), vec2f(1.0)));
+}
+
+// For `--pipeline polygon`: position and normal interpolated from the proxy's vertices (Yasui & Kanai 2004, fig. 7b).
+@fragment
+fn polygon(v: Vertex) -> Polygon {
+    let uv = clamp(v.uv, vec2f(0.0), vec2f(1.0));
+    return Polygon(v.patch_id + 1u, uv, vec4f(v.position, 1.0), vec4f(unit_or_zero(v.normal), 0.0));
+}

@@ -1,0 +1,138 @@
+//! What is drawn on the light plane: f64, with hard edges; `shaders/shade.wgsl` filters the same shapes to the pixel.
+
+use super::Light;
+use glam::{DVec2, DVec3, dvec2};
+
+/// A picture in linear RGB, rows from top to bottom.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Picture {
+    /// Width and height in texels, both at least 1.
+    pub size: [u32; 2],
+    /// sRGB-encoded RGBA texels, 4 bytes each; alpha is ignored.
+    pub rgba8: Vec<u8>,
+}
+
+/// The shape of the lights on the plane. Lengths are fractions of the light's `spacing`.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Pattern {
+    /// Parallel tubes at x = k spacing, `width` wide.
+    Stripes {
+        /// Part of the period that shines, 0 to 1.
+        width: f64,
+    },
+    /// Two crossing families of tubes, x = k spacing and y = k spacing (Yasui & Kanai 2004, fig. 6a).
+    Lattice {
+        /// Part of the period that shines, 0 to 1.
+        width: f64,
+    },
+    /// Regularly arranged discs (Yasui & Kanai 2004, fig. 6b).
+    Circles {
+        /// Radius, 0 to 0.5.
+        radius: f64,
+    },
+    /// A picture, stretched over the light's extents, or repeated every [`Pattern::PICTURE_PERIODS`] periods of an
+    /// infinite light.
+    Picture(Picture),
+}
+
+impl Pattern {
+    /// Width of a repeated picture, in periods of the light; its height follows from its shape.
+    pub const PICTURE_PERIODS: f64 = 8.0;
+
+    /// Light sent out at a point of the plane (world units), linear RGB from 0 to 1; black outside the light's extents.
+    pub fn radiance(&self, light: &Light, point: DVec2) -> DVec3 {
+        if !light.contains(point) {
+            return DVec3::ZERO;
+        }
+        // Signed distance to the middle of the nearest period, -0.5 to 0.5.
+        let cell = |x: f64| x - x.round();
+        let p = point / light.spacing;
+        let on = match self {
+            Pattern::Stripes { width } => cell(p.x).abs() <= width * 0.5,
+            Pattern::Lattice { width } => cell(p.x).abs().min(cell(p.y).abs()) <= width * 0.5,
+            Pattern::Circles { radius } => dvec2(cell(p.x), cell(p.y)).length() <= *radius,
+            Pattern::Picture(picture) => return picture.texel(point * self.picture_scale(light) + 0.5),
+        };
+        if on { DVec3::ONE } else { DVec3::ZERO }
+    }
+
+    /// Factor from plane coordinates in world units to texture coordinates (0 to 1 across the picture, y downwards; add
+    /// 0.5). Ones for the other patterns.
+    pub fn picture_scale(&self, light: &Light) -> DVec2 {
+        let Pattern::Picture(picture) = self else { return DVec2::ONE };
+        let width = light.spacing * Self::PICTURE_PERIODS;
+        let height = width * f64::from(picture.size[1]) / f64::from(picture.size[0]);
+        let side = |half: f64, repeat: f64| if half.is_finite() { 2.0 * half } else { repeat };
+        dvec2(1.0 / side(light.half[0], width), -1.0 / side(light.half[1], height))
+    }
+}
+
+impl Picture {
+    /// The picture at half the size (rounded down, at least 1), averaged in linear light.
+    pub fn halved(&self) -> Picture {
+        let size = self.size.map(|n| (n / 2).max(1));
+        let mut rgba8 = Vec::with_capacity(4 * (size[0] * size[1]) as usize);
+        for k in 0..size[0] * size[1] {
+            let (x, y) = (k % size[0], k / size[0]);
+            let corners = [(0, 0), (1, 0), (0, 1), (1, 1)]
+                .map(|(i, j)| self.linear((2 * x + i).min(self.size[0] - 1), (2 * y + j).min(self.size[1] - 1)));
+            let mean = corners.into_iter().sum::<DVec3>() * 0.25;
+            rgba8.extend(mean.to_array().map(|c| (linear_to_srgb(c) * 255.0).round() as u8));
+            rgba8.push(255);
+        }
+        Picture { size, rgba8 }
+    }
+
+    /// A texel in linear RGB.
+    fn linear(&self, x: u32, y: u32) -> DVec3 {
+        let at = 4 * (y as usize * self.size[0] as usize + x as usize);
+        DVec3::from_array(std::array::from_fn(|c| srgb_to_linear(f64::from(self.rgba8[at + c]) / 255.0)))
+    }
+
+    /// Nearest texel at texture coordinates (repeating), linear RGB.
+    fn texel(&self, uv: DVec2) -> DVec3 {
+        let index = |x: f64, n: u32| ((x - x.floor()) * f64::from(n)).min(f64::from(n - 1)) as u32;
+        self.linear(index(uv.x, self.size[0]), index(uv.y, self.size[1]))
+    }
+}
+
+/// Inverse of the sRGB transfer function (IEC 61966-2-1), 0 to 1.
+fn srgb_to_linear(x: f64) -> f64 {
+    if x <= 0.04045 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }
+}
+
+/// The sRGB transfer function, 0 to 1.
+fn linear_to_srgb(x: f64) -> f64 {
+    if x <= 0.0031308 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn light() -> Light {
+        Light::new(DVec3::ZERO, DVec3::Z, DVec3::Y, 2.0)
+    }
+
+    #[test]
+    fn shapes() {
+        let on = |pattern: &Pattern, x: f64, y: f64| pattern.radiance(&light(), dvec2(x, y)) == DVec3::ONE;
+        let stripes = Pattern::Stripes { width: 0.25 };
+        assert!(on(&stripes, 0.24, 9.0) && on(&stripes, -3.8, 0.0) && !on(&stripes, 0.26, 0.0));
+        let lattice = Pattern::Lattice { width: 0.25 };
+        assert!(on(&lattice, 1.0, 0.2) && !on(&lattice, 1.0, 1.0));
+        let circles = Pattern::Circles { radius: 0.25 };
+        assert!(on(&circles, 2.3, -2.3) && !on(&circles, 0.4, 0.4));
+    }
+
+    #[test]
+    fn extents_and_pictures() {
+        let mut light = light();
+        light.half = [4.0, 2.0];
+        let picture = Picture { size: [2, 1], rgba8: vec![255, 0, 0, 255, 0, 255, 0, 255] };
+        let pattern = Pattern::Picture(picture);
+        assert_eq!(pattern.radiance(&light, dvec2(-1.0, 0.0)), DVec3::X);
+        assert_eq!(pattern.radiance(&light, dvec2(3.9, 1.9)), DVec3::Y);
+        assert_eq!(pattern.radiance(&light, dvec2(4.1, 0.0)), DVec3::ZERO);
+    }
+}

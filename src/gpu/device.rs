@@ -1,0 +1,194 @@
+//! A headless Vulkan device.
+
+use super::GpuError;
+use std::sync::{Arc, Mutex};
+
+/// Which adapter to use.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub enum AdapterChoice {
+    /// A real GPU where there is one, else the software adapter.
+    #[default]
+    Auto,
+    /// The software adapter (Mesa lavapipe).
+    Software,
+    /// The first adapter whose name contains this text, in any case.
+    Named(String),
+}
+
+impl AdapterChoice {
+    /// Reads `CATOPTRIC_ADAPTER`: unset or `auto`, `software`, or part of an adapter's name.
+    pub fn from_env() -> AdapterChoice {
+        match std::env::var("CATOPTRIC_ADAPTER").unwrap_or_default().as_str() {
+            "" | "auto" => AdapterChoice::Auto,
+            "software" => AdapterChoice::Software,
+            name => AdapterChoice::Named(name.to_lowercase()),
+        }
+    }
+
+    /// Rank of an adapter, lowest first; `None` if it is not wanted.
+    fn rank(&self, info: &wgpu::AdapterInfo) -> Option<u32> {
+        let by_type = match info.device_type {
+            wgpu::DeviceType::DiscreteGpu => 0,
+            wgpu::DeviceType::IntegratedGpu => 1,
+            wgpu::DeviceType::VirtualGpu => 2,
+            wgpu::DeviceType::Cpu => 3,
+            wgpu::DeviceType::Other => 4,
+        };
+        let wanted = match self {
+            AdapterChoice::Auto => true,
+            AdapterChoice::Software => info.device_type == wgpu::DeviceType::Cpu,
+            AdapterChoice::Named(name) => info.name.to_lowercase().contains(name),
+        };
+        wanted.then_some(by_type)
+    }
+}
+
+/// Device, queue and what went wrong on them.
+#[derive(Debug)]
+pub(super) struct Device {
+    pub device: wgpu::Device,
+    pub queue: wgpu::Queue,
+    pub info: wgpu::AdapterInfo,
+    pub limits: wgpu::Limits,
+    /// First error that wgpu reported outside a call that returns one.
+    error: Arc<Mutex<Option<String>>>,
+}
+
+impl Device {
+    pub fn open(choice: &AdapterChoice) -> Result<Device, GpuError> {
+        let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+        descriptor.backends = wgpu::Backends::VULKAN;
+        // Validation layers are the business of tests that install them; their absence must not print warnings.
+        descriptor.flags = wgpu::InstanceFlags::empty();
+        let instance = wgpu::Instance::new(descriptor);
+        let adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::VULKAN));
+        let adapter = adapters
+            .into_iter()
+            .filter_map(|adapter| Some((choice.rank(&adapter.get_info())?, adapter)))
+            .min_by_key(|(rank, _)| *rank)
+            .map(|(_, adapter)| adapter)
+            .ok_or(GpuError::NoAdapter)?;
+        let limits = adapter.limits();
+        let descriptor = wgpu::DeviceDescriptor {
+            label: Some("catoptric"),
+            required_limits: limits.clone(),
+            memory_hints: wgpu::MemoryHints::MemoryUsage,
+            ..Default::default()
+        };
+        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
+            .map_err(|error| GpuError::Device { adapter: adapter.get_info().name, message: error.to_string() })?;
+        let error = Arc::new(Mutex::new(None));
+        let slot = Arc::clone(&error);
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            slot.lock().unwrap_or_else(|e| e.into_inner()).get_or_insert(error.to_string());
+        }));
+        Ok(Device { device, queue, info: adapter.get_info(), limits, error })
+    }
+
+    /// Submits and waits; reports what wgpu reported meanwhile.
+    pub fn submit(&self, encoder: wgpu::CommandEncoder) -> Result<(), GpuError> {
+        self.queue.submit([encoder.finish()]);
+        let polled = self.device.poll(wgpu::PollType::wait_indefinitely());
+        self.check()?;
+        polled.map(drop).map_err(|e| self.failed(e.to_string()))
+    }
+
+    /// The first error since the last check.
+    pub fn check(&self) -> Result<(), GpuError> {
+        match self.error.lock().unwrap_or_else(|e| e.into_inner()).take() {
+            Some(message) => Err(self.failed(message)),
+            None => Ok(()),
+        }
+    }
+
+    fn failed(&self, message: String) -> GpuError {
+        GpuError::Device { adapter: self.info.name.clone(), message }
+    }
+
+    pub fn encoder(&self) -> wgpu::CommandEncoder {
+        self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default())
+    }
+
+    /// A buffer with these contents; refuses storage that the adapter cannot bind. Never empty: an empty one cannot be
+    /// bound, so it holds one zeroed element.
+    pub fn buffer<T: bytemuck::Pod>(
+        &self,
+        what: &'static str,
+        data: &[T],
+        usage: wgpu::BufferUsages,
+    ) -> Result<wgpu::Buffer, GpuError> {
+        use wgpu::util::DeviceExt;
+        let one = [T::zeroed()];
+        let contents: &[u8] = bytemuck::cast_slice(if data.is_empty() { &one } else { data });
+        self.fits(what, contents.len() as u64)?;
+        Ok(self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(what), contents, usage }))
+    }
+
+    /// An error if a storage buffer of this size cannot be bound.
+    pub fn fits(&self, what: &'static str, size: u64) -> Result<(), GpuError> {
+        let limit = self.limits.max_storage_buffer_binding_size.min(self.limits.max_buffer_size);
+        if size > limit {
+            return Err(GpuError::TooLarge { what, size, limit });
+        }
+        Ok(())
+    }
+
+    /// Reads a buffer back that was made with `COPY_SRC`.
+    pub fn read<T: bytemuck::Pod>(&self, source: &wgpu::Buffer) -> Result<Vec<T>, GpuError> {
+        let staging = self.staging(source.size());
+        let mut encoder = self.encoder();
+        encoder.copy_buffer_to_buffer(source, 0, &staging, 0, source.size());
+        self.submit(encoder)?;
+        self.read_staging(&staging, |bytes| Ok(bytemuck::pod_collect_to_vec(bytes)))
+    }
+
+    /// Reads a whole texture back, rows from top to bottom without padding. `T` is one texel.
+    pub fn read_texture<T: bytemuck::Pod>(&self, texture: &wgpu::Texture) -> Result<Vec<T>, GpuError> {
+        let (width, height) = (texture.width(), texture.height());
+        let row = width as usize * size_of::<T>();
+        let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT as usize);
+        let staging = self.staging((padded * height as usize) as u64);
+        let mut encoder = self.encoder();
+        encoder.copy_texture_to_buffer(
+            texture.as_image_copy(),
+            wgpu::TexelCopyBufferInfo {
+                buffer: &staging,
+                layout: wgpu::TexelCopyBufferLayout {
+                    offset: 0,
+                    bytes_per_row: Some(padded as u32),
+                    rows_per_image: None,
+                },
+            },
+            texture.size(),
+        );
+        self.submit(encoder)?;
+        self.read_staging(&staging, |bytes| {
+            let mut out = vec![T::zeroed(); (width * height) as usize];
+            for (target, source) in out.chunks_exact_mut(width as usize).zip(bytes.chunks_exact(padded)) {
+                bytemuck::cast_slice_mut(target).copy_from_slice(&source[..row]);
+            }
+            Ok(out)
+        })
+    }
+
+    fn staging(&self, size: u64) -> wgpu::Buffer {
+        self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("read back"),
+            size,
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        })
+    }
+
+    fn read_staging<R>(
+        &self,
+        staging: &wgpu::Buffer,
+        read: impl FnOnce(&[u8]) -> Result<R, GpuError>,
+    ) -> Result<R, GpuError> {
+        staging.map_async(wgpu::MapMode::Read, .., |_| ());
+        self.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|e| self.failed(e.to_string()))?;
+        self.check()?;
+        let view = staging.get_mapped_range(..).map_err(|e| self.failed(e.to_string()))?;
+        read(&view)
+    }
+}

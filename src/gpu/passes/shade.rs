@@ -1,0 +1,122 @@
+//! `shaders/shade.wgsl`: field and pattern into colour.
+
+use super::{CLEAR, Passes, SUM_FORMAT, Scene, Targets, attachment, bind, draw_fullscreen, fullscreen, whole};
+use crate::field::{Pattern, Picture};
+use crate::gpu::device::Device;
+use crate::gpu::view::Window;
+use crate::gpu::{GpuError, View, shader::SHADE};
+use wgpu::BindingResource::{Sampler, TextureView};
+
+/// The picture on the light plane with all its mip levels, or one white texel.
+pub struct PictureTexture {
+    view: wgpu::TextureView,
+    sampler: wgpu::Sampler,
+}
+
+impl PictureTexture {
+    pub fn new(device: &Device, view: &View) -> Result<Self, GpuError> {
+        let white = Picture { size: [1, 1], rgba8: vec![255; 4] };
+        let picture = match &view.pattern {
+            Pattern::Picture(picture) => picture,
+            _ => &white,
+        };
+        let limit = device.limits.max_texture_dimension_2d;
+        if picture.size.iter().any(|&n| n > limit) {
+            let [w, h] = picture.size;
+            return Err(GpuError::View(format!("picture of {w}x{h}: this adapter takes at most {limit} a side")));
+        }
+        let levels = mip_levels(picture);
+        let texture = device.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("the picture"),
+            size: extent(picture.size),
+            mip_level_count: levels.len() as u32,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Rgba8UnormSrgb,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+            view_formats: &[],
+        });
+        for (level, picture) in levels.iter().enumerate() {
+            device.queue.write_texture(
+                wgpu::TexelCopyTextureInfo { mip_level: level as u32, ..texture.as_image_copy() },
+                &picture.rgba8,
+                wgpu::TexelCopyBufferLayout {
+                    offset: 0,
+                    bytes_per_row: Some(4 * picture.size[0]),
+                    rows_per_image: None,
+                },
+                extent(picture.size),
+            );
+        }
+        let edge = |half: f64| match half.is_finite() {
+            true => wgpu::AddressMode::ClampToEdge,
+            false => wgpu::AddressMode::Repeat,
+        };
+        let sampler = device.device.create_sampler(&wgpu::SamplerDescriptor {
+            address_mode_u: edge(view.light().half[0]),
+            address_mode_v: edge(view.light().half[1]),
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            mipmap_filter: wgpu::MipmapFilterMode::Linear,
+            ..Default::default()
+        });
+        Ok(PictureTexture { view: whole(&texture), sampler })
+    }
+}
+
+fn extent(size: [u32; 2]) -> wgpu::Extent3d {
+    wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 }
+}
+
+/// The picture and its halves down to one texel, averaged in linear light.
+fn mip_levels(picture: &Picture) -> Vec<Picture> {
+    let mut levels = vec![picture.clone()];
+    while levels[levels.len() - 1].size != [1, 1] {
+        levels.push(levels[levels.len() - 1].halved());
+    }
+    levels
+}
+
+pub fn pipeline<'a>(passes: &'a Passes, device: &Device) -> &'a wgpu::RenderPipeline {
+    let add = wgpu::BlendComponent {
+        src_factor: wgpu::BlendFactor::One,
+        dst_factor: wgpu::BlendFactor::One,
+        operation: wgpu::BlendOperation::Add,
+    };
+    let target = wgpu::ColorTargetState {
+        format: SUM_FORMAT,
+        blend: Some(wgpu::BlendState { color: add, alpha: add }),
+        write_mask: wgpu::ColorWrites::ALL,
+    };
+    passes.shade.get_or_init(|| fullscreen(device, &SHADE, "shade", &[Some(target)]))
+}
+
+/// Adds one sample to the sum; `first` starts it.
+pub fn run(
+    device: &Device,
+    passes: &Passes,
+    scene: &Scene<'_>,
+    targets: &Targets,
+    window: &Window,
+    first: bool,
+) -> Result<(), GpuError> {
+    let pipeline = pipeline(passes, device);
+    let record = scene.view.shade_record(scene.tables, window);
+    let record = device.buffer("the colours", &[record], wgpu::BufferUsages::UNIFORM)?;
+    let [position, normal, field] = [&targets.position, &targets.normal, &targets.field].map(whole);
+    let group = bind(
+        device,
+        pipeline.get_bind_group_layout(0),
+        &[
+            (0, TextureView(&position)),
+            (1, TextureView(&normal)),
+            (2, TextureView(&field)),
+            (3, TextureView(&scene.picture.view)),
+            (4, Sampler(&scene.picture.sampler)),
+            (5, record.as_entire_binding()),
+            (6, scene.light.as_entire_binding()),
+        ],
+    );
+    let load = if first { CLEAR } else { wgpu::LoadOp::Load };
+    draw_fullscreen(device, pipeline, &[group], &[attachment(&whole(&targets.sum), load)])
+}

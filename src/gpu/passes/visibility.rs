@@ -1,0 +1,122 @@
+//! `shaders/visibility.wgsl`: which patch, at which (u,v), each pixel sees.
+
+use super::{CLEAR, DEPTH_FORMAT, PATCH_FORMAT, Passes, SURFACE_FORMAT, Scene, Targets, UV_FORMAT};
+use super::{attachment, bind, shader, whole};
+use crate::gpu::device::Device;
+use crate::gpu::proxy::{Draw, Proxy};
+use crate::gpu::view::Window;
+use crate::gpu::{GpuError, Pipeline, shader::VISIBILITY};
+use wgpu::BufferUsages;
+
+/// The proxy tessellation on the adapter.
+pub struct ProxyBuffers {
+    vertices: wgpu::Buffer,
+    indices: wgpu::Buffer,
+    order: wgpu::Buffer,
+    draws: Vec<Draw>,
+}
+
+impl ProxyBuffers {
+    pub fn new(device: &Device, proxy: &Proxy) -> Result<Self, GpuError> {
+        Ok(ProxyBuffers {
+            vertices: device.buffer("the vertices of the proxy", &proxy.vertices, BufferUsages::VERTEX)?,
+            indices: device.buffer("the triangles of the proxy", &proxy.indices, BufferUsages::INDEX)?,
+            order: device.buffer("the order of the patches", &proxy.order, BufferUsages::STORAGE)?,
+            draws: proxy.draws.clone(),
+        })
+    }
+}
+
+pub fn pipeline<'a>(passes: &'a Passes, device: &Device, pipeline: Pipeline) -> &'a wgpu::RenderPipeline {
+    match pipeline {
+        Pipeline::Limit => passes.visibility.get_or_init(|| create(device, "visible", &[PATCH_FORMAT, UV_FORMAT])),
+        Pipeline::Polygon => passes
+            .visibility_polygon
+            .get_or_init(|| create(device, "polygon", &[PATCH_FORMAT, UV_FORMAT, SURFACE_FORMAT, SURFACE_FORMAT])),
+    }
+}
+
+fn create(device: &Device, entry: &str, formats: &[wgpu::TextureFormat]) -> wgpu::RenderPipeline {
+    let shader = shader(device, &VISIBILITY);
+    let targets: Vec<_> = formats.iter().map(|&format| Some(format.into())).collect();
+    device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("visibility"),
+        layout: None,
+        vertex: wgpu::VertexState {
+            module: &shader,
+            entry_point: Some("vertex"),
+            compilation_options: Default::default(),
+            buffers: &[Some(wgpu::VertexBufferLayout {
+                array_stride: size_of::<[f32; 2]>() as u64,
+                step_mode: wgpu::VertexStepMode::Vertex,
+                attributes: &wgpu::vertex_attr_array![0 => Float32x2],
+            })],
+        },
+        // Both sides are seen: open panels have an inside.
+        primitive: Default::default(),
+        // Reversed depth: near/distance, so the greater is the nearer.
+        depth_stencil: Some(wgpu::DepthStencilState {
+            format: DEPTH_FORMAT,
+            depth_write_enabled: Some(true),
+            depth_compare: Some(wgpu::CompareFunction::Greater),
+            stencil: Default::default(),
+            bias: Default::default(),
+        }),
+        multisample: Default::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: &shader,
+            entry_point: Some(entry),
+            compilation_options: Default::default(),
+            targets: &targets,
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}
+
+pub fn run(
+    device: &Device,
+    passes: &Passes,
+    scene: &Scene<'_>,
+    targets: &Targets,
+    window: &Window,
+) -> Result<(), GpuError> {
+    let pipeline = pipeline(passes, device, scene.view.pipeline);
+    let frame = scene.view.frame_record(scene.tables, window);
+    let frame = device.buffer("the frame", &[frame], BufferUsages::UNIFORM)?;
+    let group = bind(
+        device,
+        pipeline.get_bind_group_layout(0),
+        &[
+            (0, scene.tables.records.as_entire_binding()),
+            (1, scene.tables.points.as_entire_binding()),
+            (2, scene.tables.scales.as_entire_binding()),
+            (3, scene.patch_views.as_entire_binding()),
+            (4, frame.as_entire_binding()),
+            (5, scene.proxy.order.as_entire_binding()),
+        ],
+    );
+    let views: Vec<_> =
+        [&targets.patch, &targets.uv].into_iter().chain(targets.proxy.iter().flatten()).map(whole).collect();
+    let attachments: Vec<_> = views.iter().map(|view| attachment(view, CLEAR)).collect();
+    let depth = whole(&targets.depth);
+    let mut encoder = device.encoder();
+    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        color_attachments: &attachments,
+        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+            view: &depth,
+            depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard }),
+            stencil_ops: None,
+        }),
+        ..Default::default()
+    });
+    pass.set_pipeline(pipeline);
+    pass.set_bind_group(0, &group, &[]);
+    pass.set_vertex_buffer(0, scene.proxy.vertices.slice(..));
+    pass.set_index_buffer(scene.proxy.indices.slice(..), wgpu::IndexFormat::Uint32);
+    for draw in &scene.proxy.draws {
+        pass.draw_indexed(draw.indices.clone(), draw.base_vertex, draw.instances.clone());
+    }
+    drop(pass);
+    device.submit(encoder)
+}

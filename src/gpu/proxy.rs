@@ -1,0 +1,118 @@
+//! The proxy tessellation: small parameter grids, instanced over the patches that use them.
+//!
+//! For level L a patch of depth d is cut into 2^max(0, L-d) parts each way, so neighbours of any depth up to L meet in
+//! the same vertices. A patch that is not cut but has a deeper neighbour (a transition edge) becomes a fan with a vertex
+//! in the middle of that edge.
+
+use std::ops::Range;
+
+/// All patterns of one level, and the patches that use each.
+#[derive(Debug, Default, PartialEq)]
+pub(super) struct Proxy {
+    /// Parameters of the vertices of all patterns.
+    pub vertices: Vec<[f32; 2]>,
+    /// Triangles of all patterns, relative to the pattern's first vertex.
+    pub indices: Vec<u32>,
+    /// Patches, pattern after pattern.
+    pub order: Vec<u32>,
+    /// One draw a pattern.
+    pub draws: Vec<Draw>,
+}
+
+/// One instanced draw.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Draw {
+    pub indices: Range<u32>,
+    pub base_vertex: i32,
+    /// Range of `order`.
+    pub instances: Range<u32>,
+}
+
+impl Proxy {
+    /// Tessellation of level `level` of patches with these depths and transition bits.
+    pub fn new(cells: &[(u8, u8)], level: u32) -> Proxy {
+        // Fans 0 to 15 (0: the plain quad), then grids of 2, 4, ... 2^level parts.
+        let pattern = |&(depth, transition): &(u8, u8)| match level.saturating_sub(u32::from(depth)) {
+            0 => usize::from(transition & 15),
+            finer => 15 + finer as usize,
+        };
+        let mut users: Vec<Vec<u32>> = vec![Vec::new(); 16 + level as usize];
+        for (patch, cell) in cells.iter().enumerate() {
+            users[pattern(cell)].push(patch as u32);
+        }
+        let mut proxy = Proxy::default();
+        for (pattern, patches) in users.into_iter().enumerate().filter(|(_, patches)| !patches.is_empty()) {
+            let (vertices, indices) = match pattern {
+                0 => grid(1),
+                1..16 => fan(pattern as u8),
+                _ => grid(1 << (pattern - 15)),
+            };
+            let (first_index, first_patch) = (proxy.indices.len() as u32, proxy.order.len() as u32);
+            let base_vertex = proxy.vertices.len() as i32;
+            proxy.vertices.extend(vertices);
+            proxy.indices.extend(indices);
+            proxy.order.extend(patches);
+            proxy.draws.push(Draw {
+                indices: first_index..proxy.indices.len() as u32,
+                base_vertex,
+                instances: first_patch..proxy.order.len() as u32,
+            });
+        }
+        proxy
+    }
+}
+
+/// The unit square in parts x parts quads.
+fn grid(parts: u32) -> (Vec<[f32; 2]>, Vec<u32>) {
+    let row = parts + 1;
+    let vertices = (0..row * row).map(|k| [k % row, k / row].map(|x| x as f32 / parts as f32)).collect();
+    let quads = (0..parts * parts).map(|k| k / parts * row + k % parts);
+    (vertices, quads.flat_map(|a| [a, a + 1, a + row + 1, a, a + row + 1, a + row]).collect())
+}
+
+/// The unit square as a fan round its middle, with an extra vertex on every edge whose bit is set (bit 0: v = 0, 1: u = 1,
+/// 2: v = 1, 3: u = 0).
+fn fan(transition: u8) -> (Vec<[f32; 2]>, Vec<u32>) {
+    const CORNERS: [[f32; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+    let mut vertices = vec![[0.5, 0.5]];
+    for edge in 0..4 {
+        let (a, b) = (CORNERS[edge], CORNERS[(edge + 1) % 4]);
+        vertices.push(a);
+        if transition >> edge & 1 == 1 {
+            vertices.push([(a[0] + b[0]) * 0.5, (a[1] + b[1]) * 0.5]);
+        }
+    }
+    let rim = vertices.len() as u32 - 1;
+    (vertices, (0..rim).flat_map(|k| [0, k + 1, (k + 1) % rim + 1]).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Twice the area of a triangle, positive if it turns from u to v.
+    fn area(vertices: &[[f32; 2]], triangle: &[u32]) -> f32 {
+        let [a, b, c] = [0, 1, 2].map(|k| vertices[triangle[k] as usize]);
+        (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+    }
+
+    #[test]
+    fn patterns_cover_the_square_once() {
+        for (vertices, indices) in (1..16).map(fan).chain([1, 2, 8, 16].map(grid)) {
+            let areas: Vec<f32> = indices.chunks_exact(3).map(|t| area(&vertices, t)).collect();
+            assert!(areas.iter().all(|&a| a > 0.0));
+            assert!((areas.iter().sum::<f32>() - 2.0).abs() < 1e-5);
+        }
+    }
+
+    #[test]
+    fn every_patch_is_drawn_once() {
+        let cells: Vec<(u8, u8)> = (0..50).map(|k| (k % 6, k % 16)).collect();
+        let proxy = Proxy::new(&cells, 3);
+        let mut order = proxy.order.clone();
+        order.sort_unstable();
+        assert_eq!(order, (0..50).collect::<Vec<u32>>());
+        assert_eq!(proxy.draws.iter().map(|d| d.instances.len()).sum::<usize>(), 50);
+        assert_eq!(Proxy::new(&[], 3).draws, []);
+    }
+}

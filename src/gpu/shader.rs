@@ -1,0 +1,93 @@
+//! WGSL sources: which files make up a pass, and the constants that Rust shares with them.
+
+use crate::stam::{LEVELS, WINDOW_POINTS};
+
+/// Kind of a patch of 16 points.
+pub const KIND_REGULAR: u32 = 0;
+/// Kind of a patch with a table of levels.
+pub const KIND_IRREGULAR: u32 = 1;
+/// Pattern numbers.
+pub const PATTERN_STRIPES: u32 = 0;
+/// Two families of stripes.
+pub const PATTERN_LATTICE: u32 = 1;
+/// Discs.
+pub const PATTERN_CIRCLES: u32 = 2;
+/// A picture.
+pub const PATTERN_PICTURE: u32 = 3;
+/// Invocations in a workgroup of the compute passes.
+pub const WORKGROUP: u32 = 64;
+/// Highest level n with 2^-n a normal f32: the length of a class's [`Scale`](super::records::Scale) table.
+pub const SCALE_LEVELS: u32 = 126;
+/// Distance in pixels by which the borders of proxy patches overlap: large against the rasteriser's grid of 1/256 pixel
+/// on which vertices that differ by rounding may land one step apart, small against a pixel.
+pub const PUSH: f32 = 0.1;
+
+/// One shader module: its name, the files that it consists of, and its entry points.
+#[derive(Debug, Clone, Copy)]
+pub struct Module {
+    /// File stem of the pass.
+    pub name: &'static str,
+    /// WGSL files, concatenated.
+    pub files: &'static [&'static str],
+}
+
+impl Module {
+    /// The whole source, constants first.
+    pub fn source(&self) -> String {
+        let mut source = constants();
+        for file in self.files {
+            source.push_str(file);
+        }
+        source
+    }
+}
+
+const RECORDS: &str = include_str!("../../shaders/shared/records.wgsl");
+const LIMIT_POINT: &str = include_str!("../../shaders/shared/limit_point.wgsl");
+const FULLSCREEN: &str = include_str!("../../shaders/shared/fullscreen.wgsl");
+const SURFACE: &str = include_str!("../../shaders/shared/surface.wgsl");
+const PATTERN: &str = include_str!("../../shaders/shared/pattern.wgsl");
+const REFLECTION: &str = include_str!("../../shaders/field/reflection.wgsl");
+
+/// Rasterises the proxy.
+pub const VISIBILITY: Module =
+    Module { name: "visibility", files: &[RECORDS, LIMIT_POINT, include_str!("../../shaders/visibility.wgsl")] };
+/// Exact surface per pixel.
+pub const LIMIT: Module = Module {
+    name: "limit",
+    files: &[RECORDS, LIMIT_POINT, REFLECTION, SURFACE, FULLSCREEN, include_str!("../../shaders/limit.wgsl")],
+};
+/// Interpolated surface per pixel.
+pub const POLYGON: Module = Module {
+    name: "polygon",
+    files: &[RECORDS, REFLECTION, SURFACE, FULLSCREEN, include_str!("../../shaders/polygon.wgsl")],
+};
+/// Colour.
+pub const SHADE: Module =
+    Module { name: "shade", files: &[REFLECTION, PATTERN, FULLSCREEN, include_str!("../../shaders/shade.wgsl")] };
+/// Linear sum to sRGB.
+pub const RESOLVE: Module =
+    Module { name: "resolve", files: &[FULLSCREEN, include_str!("../../shaders/resolve.wgsl")] };
+/// Limit at samples.
+pub const EVALUATE: Module =
+    Module { name: "evaluate", files: &[RECORDS, LIMIT_POINT, include_str!("../../shaders/evaluate.wgsl")] };
+
+/// All modules.
+pub const MODULES: [Module; 6] = [VISIBILITY, LIMIT, POLYGON, SHADE, RESOLVE, EVALUATE];
+
+/// WGSL declarations of the constants above.
+fn constants() -> String {
+    let counts = [
+        ("KIND_IRREGULAR", KIND_IRREGULAR),
+        ("PATTERN_STRIPES", PATTERN_STRIPES),
+        ("PATTERN_LATTICE", PATTERN_LATTICE),
+        ("PATTERN_CIRCLES", PATTERN_CIRCLES),
+        ("PATTERN_PICTURE", PATTERN_PICTURE),
+        ("WORKGROUP", WORKGROUP),
+        ("WINDOW_POINTS", WINDOW_POINTS as u32),
+        ("CENTRE_LEVEL", LEVELS as u32),
+    ];
+    let mut text: String = counts.iter().map(|(name, value)| format!("const {name} = {value}u;\n")).collect();
+    text.push_str(&format!("const PUSH = {PUSH:?};\n"));
+    text
+}

@@ -1,0 +1,234 @@
+//! What to draw, and its f64-composed records for the shaders.
+
+use super::records::{FrameRecord, LightRecord, PatchView, ShadeRecord};
+use super::shader::{PATTERN_CIRCLES, PATTERN_LATTICE, PATTERN_PICTURE, PATTERN_STRIPES};
+use super::{GpuError, Tables};
+use crate::field::{Camera, Field, Light, Pattern};
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// Highest level of the proxy tessellation: 256 parts a face.
+pub const MAX_PROXY_LEVEL: u32 = 8;
+/// Most samples a pixel each way.
+pub const MAX_SAMPLES: u32 = 4;
+/// Largest picture side in pixels.
+const MAX_SIZE: u32 = 32_768;
+
+/// How position and normal come to a pixel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Pipeline {
+    /// Evaluated on the limit surface at the pixel's (patch, u, v).
+    #[default]
+    Limit,
+    /// Interpolated from the proxy's vertices, which have limit positions and normals (Yasui & Kanai 2004, fig. 7b).
+    Polygon,
+}
+
+/// Colours, linear RGB from 0 to 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Palette {
+    /// The object where it mirrors no light.
+    pub paint: [f32; 3],
+    /// The lights.
+    pub tube: [f32; 3],
+    /// Background at the top of the picture.
+    pub top: [f32; 3],
+    /// Background at the bottom.
+    pub bottom: [f32; 3],
+}
+
+impl Default for Palette {
+    /// Dark blue-grey paint and slightly warm white tubes before a light neutral background.
+    fn default() -> Self {
+        Palette {
+            paint: [0.020, 0.026, 0.036],
+            tube: [0.955, 0.945, 0.920],
+            top: [0.830, 0.840, 0.850],
+            bottom: [0.560, 0.575, 0.590],
+        }
+    }
+}
+
+/// A picture to take.
+#[derive(Debug, Clone, PartialEq)]
+pub struct View {
+    /// From where, and how many pixels.
+    pub camera: Camera,
+    /// What is read off the surface.
+    pub field: Field,
+    /// How the field becomes light.
+    pub pattern: Pattern,
+    /// How position and normal come to a pixel.
+    pub pipeline: Pipeline,
+    /// Level of the proxy tessellation, 0 to [`MAX_PROXY_LEVEL`]: 2^level parts a ptex face.
+    pub proxy_level: u32,
+    /// Samples a pixel each way, 1 to [`MAX_SAMPLES`].
+    pub samples: u32,
+    /// Colours.
+    pub palette: Palette,
+}
+
+impl View {
+    /// Reflection lines of `light` in stripes, with defaults for the rest.
+    pub fn new(camera: Camera, light: Light) -> View {
+        View {
+            camera,
+            field: Field::Reflection(light),
+            pattern: Pattern::Stripes { width: 0.42 },
+            pipeline: Pipeline::Limit,
+            proxy_level: 4,
+            samples: 2,
+            palette: Palette::default(),
+        }
+    }
+
+    pub(super) fn light(&self) -> &Light {
+        match &self.field {
+            Field::Reflection(light) => light,
+        }
+    }
+
+    /// Refuses what cannot be drawn.
+    pub(super) fn check(&self) -> Result<(), GpuError> {
+        let fail = |message: String| Err(GpuError::View(message));
+        let Camera { eye, target, up, fov, size } = self.camera;
+        if size.iter().any(|n| !(1..=MAX_SIZE).contains(n)) {
+            return fail(format!("picture size {}x{}: each side must be 1 to {MAX_SIZE} pixels", size[0], size[1]));
+        }
+        if !(eye.is_finite() && target.is_finite() && up.is_finite()) || eye == target {
+            return fail("the camera's eye and target must be two finite points".into());
+        }
+        if (target - eye).normalize().cross(up.normalize_or_zero()).length() < 1e-9 {
+            return fail("the camera's up direction must not be zero or parallel to the line of sight".into());
+        }
+        if !(fov > 0.0 && fov < 180.0) {
+            return fail(format!("field of view {fov}: must be between 0 and 180 degrees"));
+        }
+        if self.proxy_level > MAX_PROXY_LEVEL {
+            return fail(format!("proxy level {}: must be 0 to {MAX_PROXY_LEVEL}", self.proxy_level));
+        }
+        if !(1..=MAX_SAMPLES).contains(&self.samples) {
+            return fail(format!("{} samples: must be 1 to {MAX_SAMPLES}", self.samples));
+        }
+        let light = self.light();
+        let axes_ok = light.center.is_finite() && (light.normal().length() - 1.0).abs() < 1e-6;
+        if !axes_ok || !(light.spacing > 0.0 && light.spacing.is_finite()) {
+            return fail("the light needs a finite centre, perpendicular unit axes and a spacing above 0".into());
+        }
+        match &self.pattern {
+            Pattern::Picture(p)
+                if p.rgba8.len() != 4 * p.size[0] as usize * p.size[1] as usize || p.rgba8.is_empty() =>
+            {
+                fail("the picture's bytes do not match its size".into())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Every patch as this camera sees it; composed in f64, then rounded (design.md 4, "Projection").
+    pub(super) fn patch_views(&self, tables: &Tables) -> Vec<PatchView> {
+        let axes = self.camera.axes();
+        let unit = tables.unit();
+        let one = |origin: &DVec3| {
+            let d = (*origin - self.camera.eye) / unit;
+            let clip = [axes.scale[0] * axes.right.dot(d), axes.scale[1] * axes.up.dot(d), axes.forward.dot(d)];
+            PatchView { clip: clip.map(|x| x as f32), padding0: 0.0, eye: (-d).as_vec3().to_array(), padding1: 0.0 }
+        };
+        tables.origins.par_iter().map(one).collect()
+    }
+
+    /// The projection of the part of the picture that `window` draws.
+    pub(super) fn frame_record(&self, tables: &Tables, window: &Window) -> FrameRecord {
+        let axes = self.camera.axes();
+        let [w, h] = self.camera.size.map(f64::from);
+        let [tw, th] = window.size.map(f64::from);
+        let [x, y] = [0, 1].map(|k| f64::from(window.origin[k]) + window.jitter[k]);
+        let row = |v: DVec3| v.as_vec3().to_array();
+        FrameRecord {
+            clip_x: row(axes.right * axes.scale[0]),
+            near: (self.camera.near(tables.bounds()) / tables.unit()) as f32,
+            clip_y: row(axes.up * axes.scale[1]),
+            focal: (axes.scale[1] * h * 0.5) as f32,
+            clip_w: row(axes.forward),
+            proxy_level: self.proxy_level,
+            scale: [(w / tw) as f32, (h / th) as f32],
+            shift: [(w / tw - 2.0 * x / tw - 1.0) as f32, (1.0 - h / th + 2.0 * y / th) as f32],
+            size: [tw as f32, th as f32],
+            padding: [0.0; 2],
+        }
+    }
+
+    /// The light relative to the eye.
+    pub(super) fn light_record(&self, tables: &Tables) -> LightRecord {
+        /// Stands for an infinite extent: finite, so that shader arithmetic stays defined.
+        const ENDLESS: f64 = 1e30;
+        let light = self.light();
+        let unit = tables.unit();
+        let half = light.half.map(|h| (h / unit).min(ENDLESS) as f32);
+        LightRecord {
+            center: ((light.center - self.camera.eye) / unit).as_vec3().to_array(),
+            spacing: (light.spacing / unit) as f32,
+            axis_x: light.axes[0].as_vec3().to_array(),
+            half_x: half[0],
+            axis_y: light.axes[1].as_vec3().to_array(),
+            half_y: half[1],
+        }
+    }
+
+    /// Colours and pattern.
+    pub(super) fn shade_record(&self, tables: &Tables, window: &Window) -> ShadeRecord {
+        let (pattern, width) = match &self.pattern {
+            Pattern::Stripes { width } => (PATTERN_STRIPES, *width),
+            Pattern::Lattice { width } => (PATTERN_LATTICE, *width),
+            Pattern::Circles { radius } => (PATTERN_CIRCLES, *radius),
+            Pattern::Picture(_) => (PATTERN_PICTURE, 0.0),
+        };
+        let Palette { paint, tube, top, bottom } = self.palette;
+        let samples = self.samples as f32;
+        ShadeRecord {
+            paint,
+            width: width as f32,
+            tube,
+            pattern,
+            top,
+            pixel: 1.0 / samples,
+            bottom,
+            weight: 1.0 / (samples * samples),
+            up: self.camera.up.normalize_or_zero().as_vec3().to_array(),
+            row: (f64::from(window.origin[1]) + window.jitter[1]) as f32,
+            picture_scale: (self.pattern.picture_scale(self.light()) * tables.unit()).as_vec2().to_array(),
+            rows: self.camera.size[1] as f32,
+            padding: 0.0,
+        }
+    }
+}
+
+/// A rectangle of the picture and the place inside its pixels that one pass samples.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Window {
+    /// First pixel.
+    pub origin: [u32; 2],
+    /// Pixels.
+    pub size: [u32; 2],
+    /// Offset from the pixel's centre, in pixels.
+    pub jitter: [f64; 2],
+}
+
+impl Window {
+    /// Side of a tile: bounds the memory of the intermediate textures (76 bytes a pixel) whatever the picture's size.
+    pub const TILE: u32 = 2048;
+
+    /// Tiles of a picture, at the pixel centres.
+    pub fn tiles(size: [u32; 2]) -> Vec<Window> {
+        let starts = |n: u32| (0..n).step_by(Self::TILE as usize);
+        let part = |start: u32, n: u32| (n - start).min(Self::TILE);
+        let window = |x, y| Window { origin: [x, y], size: [part(x, size[0]), part(y, size[1])], jitter: [0.0; 2] };
+        starts(size[1]).flat_map(|y| starts(size[0]).map(move |x| window(x, y))).collect()
+    }
+
+    /// The regular grid of samples x samples places inside a pixel.
+    pub fn samples(self, samples: u32) -> impl Iterator<Item = Window> {
+        let place = move |i: u32| (f64::from(i) + 0.5) / f64::from(samples) - 0.5;
+        (0..samples * samples).map(move |k| Window { jitter: [place(k % samples), place(k / samples)], ..self })
+    }
+}
