@@ -198,10 +198,8 @@ fn info_counts_features_and_patches() {
 fn verify_passes_and_says_so_everywhere() {
     let folder = Folder::new();
     let meshes = [mesh("cube"), mesh("dart")];
-    let mut args: Vec<&std::ffi::OsStr> = vec!["verify".as_ref(), "--json".as_ref(), "v.json".as_ref()];
-    args.extend(["--size".as_ref(), "64x64".as_ref()]);
-    args.extend(meshes.iter().map(|mesh| mesh.as_os_str()));
-    let output = folder.run(args);
+    let flags = ["verify", "--json", "v.json", "--size", "64x64"].map(PathBuf::from);
+    let output = folder.run(flags.iter().chain(&meshes));
     let text = std::fs::read(folder.path("v.json")).expect("the report is written");
     let report: serde_json::Value = serde_json::from_slice(&text).expect("JSON");
     assert_eq!(report["pass"], true, "{}", String::from_utf8_lossy(&output.stdout));

@@ -127,7 +127,9 @@ fn the_vertex_is_the_limit_of_its_patch() {
 fn the_surface_follows_its_points() {
     let mesh = mesh::sample();
     let surface = LimitSurface::new(&mesh).expect("it has a surface");
-    for (scale, offset) in [(2f64.powi(-60), DVec3::ZERO), (2f64.powi(40), DVec3::ZERO), (1.0, DVec3::new(1000.0, -500.0, 200.0))] {
+    for (scale, offset) in
+        [(2f64.powi(-60), DVec3::ZERO), (2f64.powi(40), DVec3::ZERO), (1.0, DVec3::new(1000.0, -500.0, 200.0))]
+    {
         let mut other = mesh.clone();
         other.points.iter_mut().for_each(|p| *p = *p * scale + offset);
         let moved = LimitSurface::new(&other).expect("it has a surface");

@@ -19,7 +19,7 @@ pub(super) struct Cli {
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
     /// Draw the reflection lines of the limit surface
-    Render(super::render::RenderArgs),
+    Render(Box<super::render::RenderArgs>),
     /// Evaluate the limit surface at given samples
     Eval(EvalArgs),
     /// Compare the limit surface, on CPU and GPU, with OpenSubdiv
@@ -87,7 +87,8 @@ pub(super) fn size(text: &str) -> Result<[u32; 2], String> {
 
 /// Parses `X,Y,Z`.
 pub(super) fn vector(text: &str) -> Result<glam::DVec3, String> {
-    let numbers: Vec<f64> = text.split(',').map_while(|x| x.trim().parse().ok()).filter(|x: &f64| x.is_finite()).collect();
+    let numbers: Vec<f64> =
+        text.split(',').map_while(|x| x.trim().parse().ok()).filter(|x: &f64| x.is_finite()).collect();
     match numbers[..] {
         [x, y, z] if text.matches(',').count() == 2 => Ok(glam::DVec3::new(x, y, z)),
         _ => Err("give three finite numbers X,Y,Z".to_owned()),

@@ -22,13 +22,10 @@ struct Sample {
 
 pub(super) fn run(args: &EvalArgs) -> Result<(), Failure> {
     let mesh = load(args.mesh.as_deref())?;
-    let patch_error = |source| Failure::Patch { mesh: mesh.name.clone(), source };
-    let surface = LimitSurface::new(&mesh).map_err(patch_error)?;
+    let surface = LimitSurface::new(&mesh).map_err(|e| Failure::of(&mesh, e))?;
     let samples = read(&args.samples, surface.ptex_count())?;
     let jets = match args.backend {
-        Backend::Cpu => {
-            samples.par_iter().map(|s| Some(surface.evaluate_ptex(s.face, [s.u, s.v])?.1)).collect()
-        }
+        Backend::Cpu => samples.par_iter().map(|s| Some(surface.evaluate_ptex(s.face, [s.u, s.v])?.1)).collect(),
         Backend::Gpu => on_gpu(&surface, &samples)?,
         Backend::Osd => by_opensubdiv(&mesh, &samples)?,
     };
@@ -39,7 +36,7 @@ pub(super) fn run(args: &EvalArgs) -> Result<(), Failure> {
 fn read(path: &Path, faces: usize) -> Result<Vec<Sample>, Failure> {
     let bad = |line: Option<u64>, what: String| {
         let place = line.map_or(String::new(), |line| format!(":{line}"));
-        Failure::Usage(format!("{}{place}: {what}", path.display()))
+        Failure::Bad(format!("{}{place}: {what}", path.display()))
     };
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
@@ -88,7 +85,8 @@ fn on_gpu(surface: &LimitSurface, samples: &[Sample]) -> Result<Vec<Option<Jet>>
 
 fn by_opensubdiv(mesh: &SubdivMesh, samples: &[Sample]) -> Result<Vec<Option<Jet>>, Failure> {
     let samples: Vec<_> = samples.iter().map(|s| (s.face, s.u, s.v)).collect();
-    let answers = Far::new(mesh, MAX_ISOLATION)?.evaluate(&samples)?;
+    let answers =
+        Far::new(mesh, MAX_ISOLATION).and_then(|mut far| far.evaluate(&samples)).map_err(|e| Failure::of(mesh, e))?;
     let jet = |r: &crate::osd::ReferenceJet| Jet {
         position: r.position,
         du: r.du,

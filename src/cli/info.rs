@@ -49,9 +49,8 @@ struct Info {
 
 pub(super) fn run(args: &InfoArgs) -> Result<(), Failure> {
     let mesh = load(args.mesh.as_deref())?;
-    let patch_error = |source| Failure::Patch { mesh: mesh.name.clone(), source };
-    let surface = LimitSurface::new(&mesh).map_err(patch_error)?;
-    let control = Refiner::uniform(&mesh, 1)?.level(0)?;
+    let surface = LimitSurface::new(&mesh).map_err(|e| Failure::of(&mesh, e))?;
+    let control = Refiner::uniform(&mesh, 1).and_then(|r| r.level(0)).map_err(|e| Failure::of(&mesh, e))?;
     let info = collect(&mesh, &surface, &control);
     let text = if args.json {
         serde_json::to_string_pretty(&info).map_err(std::io::Error::from)? + "\n"

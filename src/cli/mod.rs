@@ -8,6 +8,7 @@ mod verify;
 
 use args::{Cli, Command};
 use clap::Parser;
+use std::fmt::Display;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -15,40 +16,48 @@ use std::process::ExitCode;
 use crate::gpu::GpuError;
 use crate::mesh::{self, MeshError, SubdivMesh};
 use crate::output::OutputError;
-use crate::patch::PatchError;
-use crate::verify::VerifyError;
 
 /// Why a command stopped, and with which exit code.
-#[derive(Debug, thiserror::Error)]
+#[derive(Debug)]
 enum Failure {
     /// A check failed; the report says which.
-    #[error("")]
     Check,
-    #[error("{0}")]
-    Usage(String),
-    #[error(transparent)]
-    Mesh(#[from] MeshError),
-    #[error("{mesh}: {source}")]
-    Patch { mesh: String, source: PatchError },
-    #[error(transparent)]
-    Osd(#[from] crate::osd::Error),
-    #[error(transparent)]
-    Output(#[from] OutputError),
-    #[error(transparent)]
-    Gpu(#[from] GpuError),
-    #[error("{mesh}: {source}")]
-    Verify { mesh: String, source: VerifyError },
-    #[error("cannot write to standard output: {0}")]
-    Stdout(#[from] std::io::Error),
+    /// Bad usage or input: what, where, what to do.
+    Bad(String),
+    /// No usable GPU adapter.
+    NoAdapter(String),
+    /// Standard output is gone.
+    Stdout(std::io::Error),
 }
 
 impl Failure {
-    fn exit_code(&self) -> u8 {
-        match self {
-            Self::Check => 1,
-            Self::Gpu(error) | Self::Verify { source: VerifyError::Gpu(error), .. } if error.is_no_adapter() => 3,
-            _ => 2,
-        }
+    /// A failure with the mesh in front.
+    fn of(mesh: &SubdivMesh, error: impl Display) -> Self {
+        Self::Bad(format!("{}: {error}", mesh.name))
+    }
+}
+
+impl From<GpuError> for Failure {
+    fn from(error: GpuError) -> Self {
+        if error.is_no_adapter() { Self::NoAdapter(error.to_string()) } else { Self::Bad(error.to_string()) }
+    }
+}
+
+impl From<MeshError> for Failure {
+    fn from(error: MeshError) -> Self {
+        Self::Bad(error.to_string())
+    }
+}
+
+impl From<OutputError> for Failure {
+    fn from(error: OutputError) -> Self {
+        Self::Bad(error.to_string())
+    }
+}
+
+impl From<std::io::Error> for Failure {
+    fn from(error: std::io::Error) -> Self {
+        Self::Stdout(error)
     }
 }
 
@@ -73,18 +82,17 @@ pub fn run() -> ExitCode {
         Command::Verify(args) => verify::run(&args),
         Command::Info(args) => info::run(&args),
     };
-    match result {
-        Ok(()) => ExitCode::SUCCESS,
+    let (code, message) = match result {
+        Ok(()) => return ExitCode::SUCCESS,
+        Err(Failure::Check) => return ExitCode::from(1),
         // Whoever read our output has seen enough.
-        Err(Failure::Stdout(error)) if error.kind() == std::io::ErrorKind::BrokenPipe => ExitCode::SUCCESS,
-        Err(failure) => {
-            let message = failure.to_string();
-            if !message.is_empty() {
-                eprintln!("catoptric: {message}");
-            }
-            ExitCode::from(failure.exit_code())
-        }
-    }
+        Err(Failure::Stdout(error)) if error.kind() == std::io::ErrorKind::BrokenPipe => return ExitCode::SUCCESS,
+        Err(Failure::Stdout(error)) => (2, format!("cannot write to standard output: {error}")),
+        Err(Failure::Bad(message)) => (2, message),
+        Err(Failure::NoAdapter(message)) => (3, message),
+    };
+    eprintln!("catoptric: {message}");
+    ExitCode::from(code)
 }
 
 /// Reads a mesh, or makes the built-in sample.

@@ -112,16 +112,21 @@ impl Clock {
 pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let mut clock = Clock::default();
     if !args.output.extension().is_some_and(|e| e.eq_ignore_ascii_case("png")) {
-        return Err(Failure::Usage(format!("{}: only .png is written so far; choose such a name", args.output.display())));
+        return Err(Failure::Bad(format!(
+            "{}: only .png is written so far; choose such a name",
+            args.output.display()
+        )));
     }
     check_folder(&args.output)?;
     let pattern = pattern(args)?;
     let bar = progress("drawing".to_owned());
     let mesh = clock.time("read", || load(args.mesh.as_deref()))?;
-    let patch_error = |source| Failure::Patch { mesh: mesh.name.clone(), source };
-    let surface = clock.time("patches and classes", || LimitSurface::new(&mesh)).map_err(patch_error)?;
+    let surface = clock.time("patches and classes", || LimitSurface::new(&mesh)).map_err(|e| Failure::of(&mesh, e))?;
     let bounds = surface.bounds().ok_or_else(|| {
-        Failure::Usage(format!("{}: no face has a limit surface (holes, or boundary rule none); nothing to draw", mesh.name))
+        Failure::Bad(format!(
+            "{}: no face has a limit surface (holes, or boundary rule none); nothing to draw",
+            mesh.name
+        ))
     })?;
     let view = view(args, bounds, pattern);
     let gpu = clock.time("adapter", Gpu::new)?;
@@ -150,7 +155,8 @@ fn view(args: &RenderArgs, bounds: [DVec3; 2], pattern: Pattern) -> View {
         camera.eye = eye;
     } else if args.fov != camera.fov {
         let direction = camera.eye - camera.target;
-        camera.eye = Camera::fit_from(bounds, args.size, up, direction, args.fov).eye + (camera.target - (bounds[0] + bounds[1]) * 0.5);
+        camera.eye = Camera::fit_from(bounds, args.size, up, direction, args.fov).eye
+            + (camera.target - (bounds[0] + bounds[1]) * 0.5);
     }
     camera.fov = args.fov;
 
@@ -192,7 +198,7 @@ fn pattern(args: &RenderArgs) -> Result<Pattern, Failure> {
 
 fn picture(path: &Path) -> Result<Pattern, Failure> {
     let bad = |what: String| {
-        Failure::Usage(format!("{}: {what}; give stripes, lattice, circles or a PNG file", path.display()))
+        Failure::Bad(format!("{}: {what}; give stripes, lattice, circles or a PNG file", path.display()))
     };
     let reader = image::ImageReader::open(path).map_err(|e| bad(format!("cannot read the pattern ({e})")))?;
     let reader = reader.with_guessed_format().map_err(|e| bad(format!("cannot read the pattern ({e})")))?;

@@ -3,7 +3,7 @@
 use super::args::VerifyArgs;
 use super::{Failure, load, progress, write_out};
 use crate::gpu::Gpu;
-use crate::verify::{Report, verify};
+use crate::verify::{Report, VerifyError, verify};
 use std::path::Path;
 
 pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
@@ -17,8 +17,10 @@ pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
     let mut reports = Vec::new();
     for (i, mesh) in meshes.iter().enumerate() {
         let bar = progress(format!("verifying {} ({} of {})", mesh.name, i + 1, meshes.len()));
-        let report = verify(mesh, &gpu, args.size)
-            .map_err(|source| Failure::Verify { mesh: mesh.name.clone(), source })?;
+        let report = verify(mesh, &gpu, args.size).map_err(|error| match error {
+            VerifyError::Gpu(error) => error.into(),
+            error => Failure::of(mesh, error),
+        })?;
         bar.finish_and_clear();
         write_out(None, report.to_string().as_bytes())?;
         reports.push(report);

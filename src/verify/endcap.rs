@@ -18,8 +18,7 @@ pub(super) fn run(subject: &Subject<'_>, bins: &mut Bins) -> Result<(), VerifyEr
             normal_deg: angle_deg(jet.normal, answer.du.cross(answer.dv)),
             derivative: None,
         };
-        let key =
-            Key { tier: "endcap", reference: "Bfr 2/6", kind: subject.surface.kind(patch), known_wrong: None };
+        let key = Key { tier: "endcap", reference: "Bfr 2/6", kind: subject.surface.kind(patch), known_wrong: None };
         bins.add(key, Tolerance::default(), Sample { face, u, v }, difference);
     }
     Ok(())

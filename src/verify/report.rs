@@ -136,7 +136,8 @@ impl MeshReport {
                 None => tiers.push(row),
             }
         }
-        let order = |tier: &Tier| ["vertex", "dyadic", "regular", "fragment", "endcap"].iter().position(|t| *t == tier.tier);
+        let order =
+            |tier: &Tier| ["vertex", "dyadic", "regular", "fragment", "endcap"].iter().position(|t| *t == tier.tier);
         tiers.sort_by_key(order);
         Self {
             mesh: mesh.name.clone(),

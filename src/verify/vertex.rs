@@ -22,10 +22,8 @@ pub(super) fn run(subject: &Subject<'_>, bins: &mut Bins) -> Result<(), VerifyEr
         let Some((patch, jet)) = subject.surface.evaluate_ptex(sample.face, [sample.u, sample.v]) else { continue };
         let smooth = last.vertex_rules[vertex] == Rule::Smooth;
         let known_wrong = traits.known_wrong(last, vertex);
-        let normal_deg =
-            if smooth { angle_deg(jet.normal, first[vertex].cross(second[vertex])) } else { None };
-        let key =
-            Key { tier: "vertex", reference: "limit masks", kind: subject.surface.kind(patch), known_wrong };
+        let normal_deg = if smooth { angle_deg(jet.normal, first[vertex].cross(second[vertex])) } else { None };
+        let key = Key { tier: "vertex", reference: "limit masks", kind: subject.surface.kind(patch), known_wrong };
         let position = jet.position.distance(limits[vertex]);
         bins.add(key, TOLERANCE, sample, Difference { position, normal_deg, derivative: None });
     }
