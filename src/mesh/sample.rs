@@ -43,14 +43,14 @@ const FEATURE_END: usize = 7;
 /// The row that supports it from below goes on to this column, where the surface is smooth again.
 const SUPPORT_END: usize = 5;
 /// Lip of the groove between fender and bonnet, on the fender; its bottom and the lip on the bonnet are the next rows.
-const SHUT_ROW: usize = 14;
+const SHUT_ROW: usize = 13;
 /// The crease on the bonnet lies on this row, from the front to this column.
-const BONNET_ROW: usize = 18;
+const BONNET_ROW: usize = 17;
 const BONNET_END: usize = 11;
 
 /// How far up the rows from the feature line lie, counted from where the shoulder starts to turn.
 const UPPER_ROWS: [f64; ROWS - FEATURE_ROW + 1] =
-    [-0.055, 0.0, 0.05, 0.10, 0.15, 0.205, 0.265, 0.32, 0.323, 0.326, 0.38, 0.47, 0.64];
+    [-0.055, 0.0, 0.06, 0.12, 0.185, 0.25, 0.32, 0.323, 0.326, 0.41, 0.46, 0.51, 0.64];
 
 /// 0 below 0, 1 above 1, between them the quintic with two zero derivatives at both ends.
 fn ease(t: f64) -> f64 {
