@@ -15,10 +15,10 @@ pub(super) fn reference(subject: &Subject<'_>) -> Result<Far, VerifyError> {
     Ok(Far::new(subject.mesh, MAX_ISOLATION)?)
 }
 
-/// A 4 x 4 grid, and towards each corner the points at 2^-k on both edges and the diagonal.
-fn parameters() -> Vec<[f64; 2]> {
+/// A 4 x 4 grid, and towards each corner the points at 2^-k, k up to `depth`, on both edges and the diagonal.
+fn parameters(depth: u32) -> Vec<[f64; 2]> {
     let mut out: Vec<_> = (0..25).map(|i| [f64::from(i % 5) / 4.0, f64::from(i / 5) / 4.0]).collect();
-    for k in 3..=MAX_ISOLATION as i32 {
+    for k in 3..=depth as i32 {
         let near = 2f64.powi(-k);
         for [u, v] in [[near, 0.0], [0.0, near], [near, near]] {
             out.extend([[u, v], [1.0 - u, v], [1.0 - u, 1.0 - v], [u, 1.0 - v]]);
@@ -28,9 +28,12 @@ fn parameters() -> Vec<[f64; 2]> {
 }
 
 pub(super) fn run(subject: &Subject<'_>, far: &mut Far, bins: &mut Bins) -> Result<(), VerifyError> {
-    let parameters = parameters();
-    let faces = subject.faces(parameters.len(), BUDGET);
-    let samples: Vec<_> = faces.flat_map(|face| parameters.iter().map(move |&[u, v]| (face, u, v))).collect();
+    // The quadrants of an n-gon are quads of level 1 already: isolation 10 splits them 9 times.
+    let [quad, quadrant] = [parameters(MAX_ISOLATION), parameters(MAX_ISOLATION - 1)];
+    let sizes = subject.mesh.face_sizes.iter();
+    let grids: Vec<_> = sizes.flat_map(|&n| if n == 4 { vec![&quad] } else { vec![&quadrant; n as usize] }).collect();
+    let faces = subject.faces(quad.len(), BUDGET);
+    let samples: Vec<_> = faces.flat_map(|face| grids[face as usize].iter().map(move |&[u, v]| (face, u, v))).collect();
     let references = far.evaluate(&samples)?;
     for (&(face, u, v), reference) in samples.iter().zip(&references) {
         let Some((patch, jet)) = subject.surface.evaluate_ptex(face, [u, v]) else { continue };
