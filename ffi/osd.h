@@ -100,8 +100,16 @@ osd_status osd_refiner_limit(const osd_refiner *refiner, const double *points, d
 
 /* ---- reference evaluators ---------------------------------------------------------------------------------------- */
 
-/* What answered: nothing (a hole), an exact B-spline patch, or an approximating end cap. */
-typedef enum osd_answer { OSD_ANSWER_NONE, OSD_ANSWER_REGULAR, OSD_ANSWER_END_CAP } osd_answer;
+/*
+ * What answered: nothing (a hole), an exact B-spline patch, an approximating end cap; or the reference was not asked,
+ * because 3.5.0 reads out of bounds there (Bfr, faces with an interior vertex of valence 2).
+ */
+typedef enum osd_answer {
+    OSD_ANSWER_NONE,
+    OSD_ANSWER_REGULAR,
+    OSD_ANSWER_END_CAP,
+    OSD_ANSWER_NOT_ASKED
+} osd_answer;
 
 /* Far::PatchTable in double precision, Gregory end caps; isolation in 1..10. */
 typedef struct osd_far osd_far;

@@ -14,12 +14,15 @@ pub enum Answer {
     Regular,
     /// An end cap (Far) or an irregular face (Bfr), approximate away from its corners.
     EndCap,
+    /// The reference was not asked: OpenSubdiv 3.5.0 reads out of bounds there. That is Bfr on faces with an interior
+    /// vertex of valence 2.
+    NotAsked,
 }
 
 /// A reference's answer, derivatives by the (u,v) of the ptex face.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ReferenceJet {
-    /// What answered; the other fields are zero for [`Answer::None`].
+    /// What answered; the other fields are zero for [`Answer::None`] and [`Answer::NotAsked`].
     pub answer: Answer,
     /// Position.
     pub position: DVec3,
@@ -76,6 +79,7 @@ impl Batch {
                 answer: match raw::osd_answer::from(answer) {
                     raw::OSD_ANSWER_REGULAR => Answer::Regular,
                     raw::OSD_ANSWER_END_CAP => Answer::EndCap,
+                    raw::OSD_ANSWER_NOT_ASKED => Answer::NotAsked,
                     _ => Answer::None,
                 },
                 position,

@@ -31,6 +31,10 @@ pub struct ClassTable {
     pub lambda: f64,
     /// l0: weights of the control points in the limit position of the extraordinary vertex.
     pub limit: Vec<f64>,
+    /// Weights of the control points in two tangents of the limit surface at a smooth extraordinary vertex, their cross
+    /// product along the normal: the table itself converges to them like (next eigenvalue / lambda)^n, which for high
+    /// valence is slow (0.82^n for N = 8).
+    pub tangents: Option<[Vec<f64>; 2]>,
     /// Mhat(n) at `levels[n-1]`, [`WINDOW_POINTS`] rows of K weights: Phat(n) = Mhat(n) C.
     levels: Vec<Vec<f64>>,
 }
@@ -57,7 +61,9 @@ impl ClassTable {
             let next = level.chunks_exact(size).flat_map(|row| deflated_step(row, &step, &limit, lambda)).collect();
             levels.push(std::mem::replace(&mut level, next));
         }
-        Self { lambda, limit, levels }
+        let smooth = class.closed && class.tip == Tip::Smooth && class.sharp_spoke.is_none();
+        let tangents = smooth.then(|| smooth_tangents(usize::from(class.faces), size));
+        Self { lambda, limit, tangents, levels }
     }
 
     /// Number of levels.
@@ -124,6 +130,22 @@ fn subdominant_eigenvalue(class: RingClass, step: &[Row], limit: &[f64]) -> f64 
     }
 }
 
+/// Left eigenvectors of lambda at a smooth vertex of valence N: Halstead, Kass & DeRose 1993, appendix A. The two are the
+/// cosine and the sine mode, so the second leads the first by a quarter of the way round.
+fn smooth_tangents(valence: usize, size: usize) -> [Vec<f64>; 2] {
+    let angle = TAU / valence as f64;
+    let spoke = 1.0 + angle.cos() + (angle / 2.0).cos() * (2.0 * (9.0 + angle.cos())).sqrt();
+    [0.0, 0.25 * TAU].map(|phase| {
+        let wave = |i: usize| (i as f64 * angle - phase).cos();
+        let mut weights = vec![0.0; size];
+        for i in 0..valence {
+            weights[1 + i] = spoke * wave(i);
+            weights[1 + valence + i] = wave(i) + wave(i + 1);
+        }
+        weights
+    })
+}
+
 /// Largest eigenvalue of B in absolute value, by power iteration on its transpose.
 fn iterated_eigenvalue(step: &[Row], limit: &[f64]) -> f64 {
     // No symmetry, so that no mode is missed.
@@ -176,6 +198,20 @@ mod tests {
             };
             for (k, &weight) in table.limit.iter().enumerate() {
                 assert!((weight - expected(k)).abs() < 1e-15, "N = {n}, point {k}: {weight}");
+            }
+        }
+    }
+
+    #[test]
+    fn tangents_are_left_eigenvectors() {
+        for n in 3..=12 {
+            let class = class(n, true, Tip::Smooth, None);
+            let table = ClassTable::new(class);
+            let step = Rows::new(class).step();
+            for tangent in table.tangents.as_ref().expect("a smooth vertex has tangents") {
+                let next = deflated_step(tangent, &step, &table.limit, table.lambda);
+                let change = next.iter().zip(tangent).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+                assert!(change < 1e-14, "N = {n}: {change}");
             }
         }
     }

@@ -170,8 +170,12 @@ impl LimitSurface {
         let [offset, du, dv] = sum(&weights(window.t), point);
         let scale = table.lambda.powi(window.level as i32 - 1);
         let stretch = 2f64.powi(window.level as i32) * scale;
-        let position = if uv == [0.0, 0.0] { limit } else { limit + scale * offset };
-        Jet { position, du: stretch * du, dv: stretch * dv, normal: normal(du, dv) }
+        let (position, normal) = match (uv, &table.tangents) {
+            ([0.0, 0.0], Some([first, second])) => (limit, normal(combine(first, &points), combine(second, &points))),
+            ([0.0, 0.0], None) => (limit, normal(du, dv)),
+            _ => (limit + scale * offset, normal(du, dv)),
+        };
+        Jet { position, du: stretch * du, dv: stretch * dv, normal }
     }
 
     /// Evaluates a ptex face at (u,v), each in [0,1]: the patch and the jet, derivatives by the ptex parameters; `None`

@@ -57,11 +57,13 @@ pub(super) struct Bin {
 pub(super) struct Bins {
     diagonal: f64,
     pub bins: BTreeMap<Key, Bin>,
+    /// Samples that a reference was not asked, because it corrupts memory there.
+    pub not_asked: usize,
 }
 
 impl Bins {
     pub fn new(diagonal: f64) -> Self {
-        Self { diagonal, bins: BTreeMap::new() }
+        Self { diagonal, bins: BTreeMap::new(), not_asked: 0 }
     }
 
     pub fn add(&mut self, key: Key, tolerance: Tolerance, sample: Sample, difference: Difference) {

@@ -11,6 +11,7 @@ const BUDGET: usize = 400_000;
 pub(super) fn run(subject: &Subject<'_>, bins: &mut Bins) -> Result<(), VerifyError> {
     let samples = scattered(subject, PER_FACE, BUDGET);
     let answers = Bfr::new(subject.mesh, Bfr::DEFAULT_LEVELS)?.evaluate(&samples)?;
+    bins.not_asked += answers.iter().filter(|a| a.answer == Answer::NotAsked).count();
     for (&(face, u, v), answer) in samples.iter().zip(&answers).filter(|(_, a)| a.answer == Answer::EndCap) {
         let Some((patch, jet)) = subject.surface.evaluate_ptex(face, [u, v]) else { continue };
         let difference = Difference {
