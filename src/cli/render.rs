@@ -42,7 +42,7 @@ pub(super) struct RenderArgs {
     /// Point in the middle of the picture [default: middle of the surface]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     target: Option<DVec3>,
-    /// Direction that points up
+    /// Direction that points up [default: 0,0,1]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     up: Option<DVec3>,
     /// Vertical field of view in degrees
@@ -144,30 +144,39 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Camera and light that show the built-in sample best: the fender in three-quarter view, mirroring a wall of tubes
+/// behind and beside the car, whose lines run over shoulder, feature line and wheel arch.
+fn sample_rig(bounds: [DVec3; 2], size: [u32; 2]) -> (Camera, Light) {
+    let direction = DVec3::new(-1.90, 2.10, 0.81);
+    let camera = Camera::fit_from(bounds, size, DVec3::Z, direction, DEFAULT_FOV);
+    let [center, facing, lines] = [[3.6, 2.7, 1.5], [-0.72, -0.63, -0.28], [0.38, -0.55, 0.60]].map(DVec3::from_array);
+    (camera, Light::new(center, facing, lines, 1.0))
+}
+
+/// Camera and light for any other mesh.
+fn fitted_rig(bounds: [DVec3; 2], size: [u32; 2], up: DVec3) -> (Camera, Light) {
+    let camera = Camera::fit(bounds, size, up);
+    (camera, Light::fit(bounds, camera.eye, up))
+}
+
 fn view(args: &RenderArgs, bounds: [DVec3; 2], pattern: Pattern) -> View {
-    let up = args.up.unwrap_or(DVec3::Y);
-    let mut camera = Camera::fit(bounds, args.size, up);
+    let (mut camera, mut light) = match (&args.mesh, args.up) {
+        (None, None) => sample_rig(bounds, args.size),
+        _ => fitted_rig(bounds, args.size, args.up.unwrap_or(DVec3::Z)),
+    };
+    let (middle, direction) = (camera.target, camera.eye - camera.target);
+    camera = Camera::fit_from(bounds, args.size, camera.up, direction, args.fov);
     if let Some(target) = args.target {
-        camera.eye += target - camera.target;
+        camera.eye += target - middle;
         camera.target = target;
     }
-    if let Some(eye) = args.eye {
-        camera.eye = eye;
-    } else if args.fov != camera.fov {
-        let direction = camera.eye - camera.target;
-        camera.eye = Camera::fit_from(bounds, args.size, up, direction, args.fov).eye
-            + (camera.target - (bounds[0] + bounds[1]) * 0.5);
-    }
-    camera.fov = args.fov;
+    camera.eye = args.eye.unwrap_or(camera.eye);
 
-    let mut light = Light::fit(bounds, camera.eye, up);
-    if args.light_center.is_some() || args.light_normal.is_some() || args.light_lines.is_some() {
-        light = Light::new(
-            args.light_center.unwrap_or(light.center),
-            args.light_normal.unwrap_or(light.normal()),
-            args.light_lines.unwrap_or(light.axes[1]),
-            light.spacing,
-        );
+    let given = [args.light_center, args.light_normal, args.light_lines];
+    if given.iter().any(Option::is_some) {
+        let fitted = [light.center, light.normal(), light.axes[1]];
+        let [center, normal, lines] = std::array::from_fn(|i| given[i].unwrap_or(fitted[i]));
+        light = Light::new(center, normal, lines, light.spacing);
     }
     light.spacing = args.light_spacing.unwrap_or(light.spacing);
     if let Some(size) = args.light_size {

@@ -22,7 +22,7 @@ pub(super) fn run(
 ) -> Result<(), VerifyError> {
     let surface = subject.surface;
     let Some(bounds) = surface.bounds() else { return Ok(()) };
-    let camera = Camera::fit(bounds, size, DVec3::Y);
+    let camera = Camera::fit(bounds, size, DVec3::Z);
     let light = Light::fit(bounds, camera.eye, camera.up);
     let image = gpu.inspect(&gpu.upload(surface)?, &View::new(camera, light))?;
 
