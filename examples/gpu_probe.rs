@@ -49,6 +49,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             view.pattern = Pattern::Picture(Picture { size: [image.width(), image.height()], rgba8: image.into_raw() });
         }
     }
+    for _ in 0..get("repeat").map_or(0, |r| r.parse().unwrap()) {
+        println!("      {:?}", gpu.render(&tables, &view)?.timings.steps);
+        let image = gpu.inspect(&tables, &view)?;
+        println!(
+            "inspect {:?} covered {}",
+            image.timings.steps,
+            image.patch.iter().filter(|&&p| p != NO_PATCH).count()
+        );
+    }
     let frame = gpu.render(&tables, &view)?;
     println!("render {:?} {:?}", start.elapsed(), frame.timings.steps);
     image::save_buffer(&args[2], &frame.rgba8, size, size, image::ColorType::Rgba8)?;

@@ -21,7 +21,7 @@ fn evaluate(@builtin(global_invocation_id) id: vec3u) {
     if id.x >= arrayLength(&samples) {
         return;
     }
-    let at = samples[id.x];
-    let p = limit_point(at.patch_id, clamp(at.uv, vec2f(0.0), vec2f(1.0)));
+    let s = samples[id.x];
+    let p = limit_point(textureLoad(patches, at(s.patch_id), 0), clamp(s.uv, vec2f(0.0), vec2f(1.0)));
     jets[id.x] = JetRecord(p.position, p.du, p.dv, p.normal);
 }

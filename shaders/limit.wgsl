@@ -5,11 +5,14 @@
 
 @fragment
 fn limit(@builtin(position) pixel: vec4f) -> Surface {
-    let at = vec2u(pixel.xy);
-    let id = textureLoad(visible_patch, at, 0).x;
+    let tile = in_tile(pixel.xy);
+    if is_outside(tile) {
+        return background();
+    }
+    let id = textureLoad(visible_patch, tile, 0).x;
     if id == 0u {
         return background();
     }
-    let p = limit_point(id - 1u, textureLoad(visible_uv, at, 0).xy);
+    let p = limit_point(textureLoad(patches, at(id - 1u), 0), textureLoad(visible_uv, tile, 0).xy);
     return surface(id - 1u, p.position, p.normal);
 }

@@ -7,10 +7,13 @@
 
 @fragment
 fn polygon(@builtin(position) pixel: vec4f) -> Surface {
-    let at = vec2u(pixel.xy);
-    let id = textureLoad(visible_patch, at, 0).x;
+    let tile = in_tile(pixel.xy);
+    if is_outside(tile) {
+        return background();
+    }
+    let id = textureLoad(visible_patch, tile, 0).x;
     if id == 0u {
         return background();
     }
-    return surface(id - 1u, textureLoad(proxy_position, at, 0).xyz, textureLoad(proxy_normal, at, 0).xyz);
+    return surface(id - 1u, textureLoad(proxy_position, tile, 0).xyz, textureLoad(proxy_normal, tile, 0).xyz);
 }

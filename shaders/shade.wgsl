@@ -1,4 +1,4 @@
-// Field and pattern into colour, in linear light. Host side: passes/shade.rs.
+// Field and pattern into colour, in linear light, one sample a pixel. Host side: passes/shade.rs.
 
 struct Shade {
     // Linear RGB.
@@ -8,18 +8,16 @@ struct Shade {
     tube: vec3f,
     pattern: u32,
     top: vec3f,
-    // Pixel width of this sample: 1 / samples.
-    pixel: f32,
+    // First row of the tile in the picture.
+    row: f32,
     bottom: vec3f,
-    // Share of this sample in the pixel: 1 / samples^2.
-    weight: f32,
+    // Rows of the picture.
+    rows: f32,
     // Direction up in world space.
     up: vec3f,
-    // First row of the target in the picture, and the picture's height.
-    row: f32,
+    padding0: f32,
     picture_scale: vec2f,
-    rows: f32,
-    padding: f32,
+    padding1: vec2f,
 }
 
 @group(0) @binding(0) var surface_position: texture_2d<f32>;
@@ -29,6 +27,7 @@ struct Shade {
 @group(0) @binding(4) var picture_sampler: sampler;
 @group(0) @binding(5) var<uniform> shade_in: Shade;
 @group(0) @binding(6) var<uniform> light: Light;
+@group(0) @binding(7) var<uniform> band: Band;
 
 // Change of the field towards the two neighbours on a line, the smaller one: across a silhouette or a crease the other
 // belongs to another sheet. Neighbours without a value do not count.
@@ -38,7 +37,7 @@ fn one_sided(f: vec4f, at: vec2i, step: vec2i) -> vec2f {
     let da = a.xy - f.xy;
     let db = f.xy - b.xy;
     let use_a = a.z > 0.0 && (b.z == 0.0 || dot(da, da) <= dot(db, db));
-    return select(select(vec2f(0.0), db, b.z > 0.0), da, use_a) * shade_in.pixel;
+    return select(select(vec2f(0.0), db, b.z > 0.0), da, use_a);
 }
 
 // Light from the plane, linear RGB.
@@ -65,11 +64,11 @@ fn radiance(field: vec4f, jx: vec2f, jy: vec2f) -> vec3f {
 
 @fragment
 fn shade(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
-    let at = vec2i(pixel.xy);
+    let at = vec2i(pixel.xy) - vec2i(0, band.first);
     let height = (pixel.y + shade_in.row) / shade_in.rows;
     let f = textureLoad(surface_field, at, 0);
     if f.w == 0.0 {
-        return vec4f(mix(shade_in.top, shade_in.bottom, smoothstep(0.0, 1.0, height)), 1.0) * shade_in.weight;
+        return vec4f(mix(shade_in.top, shade_in.bottom, smoothstep(0.0, 1.0, height)), 1.0);
     }
     let position = textureLoad(surface_position, at, 0);
     let normal = textureLoad(surface_normal, at, 0);
@@ -87,5 +86,5 @@ fn shade(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
         // Tubes far along the plane fade out before its horizon cuts them off.
         lit = radiance(f, jx, jy) * smoothstep(0.0, 0.2, normal.w);
     }
-    return vec4f(mix(body, shade_in.tube, lit), 1.0) * shade_in.weight;
+    return vec4f(mix(body, shade_in.tube, lit), 1.0);
 }

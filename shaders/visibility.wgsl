@@ -1,10 +1,20 @@
 // Rasterises the proxy tessellation: which patch, at which (u,v), each pixel sees (Yasui & Kanai 2004, sec. 4.4, "face id
 // and parameters"). Host side: passes/visibility.rs.
 
-@group(0) @binding(3) var<storage, read> views: array<PatchView>;
+// Two texels a patch: clip-space x, y, w of its origin; the eye relative to its origin. Composed in f64.
+@group(0) @binding(3) var views: texture_2d<f32>;
 @group(0) @binding(4) var<uniform> frame: Frame;
-// Patches in drawing order; the instance index counts in it.
+// Patches in drawing order, NO_PATCH where a group is not full.
 @group(0) @binding(5) var<storage, read> order: array<u32>;
+
+// One draw: an instance is a group of patches.
+struct Draw {
+    first: u32,
+    group_size: u32,
+    padding: vec2u,
+}
+
+@group(1) @binding(0) var<uniform> draw: Draw;
 
 struct Vertex {
     @builtin(position) clip: vec4f,
@@ -42,11 +52,14 @@ fn push_distance(c: vec3f, d: vec3f) -> f32 {
 }
 
 @vertex
-fn vertex(@location(0) uv: vec2f, @builtin(instance_index) instance: u32) -> Vertex {
-    let patch_id = order[instance];
-    let p = limit_point(patch_id, uv);
-    let view = views[patch_id];
-    var clip = view.clip + clip_direction(p.position);
+fn vertex(@location(0) uv: vec2f, @location(1) member: u32, @builtin(instance_index) group: u32) -> Vertex {
+    let patch_id = order[draw.first + group * draw.group_size + member];
+    if patch_id == NO_PATCH {
+        return Vertex(vec4f(2.0, 2.0, 0.0, 1.0), vec2f(0.0), 0u, vec3f(0.0), vec3f(0.0));
+    }
+    let record = textureLoad(patches, at(patch_id), 0);
+    let p = limit_point(record, uv);
+    var clip = textureLoad(views, at(2u * patch_id), 0).xyz + clip_direction(p.position);
     // Neighbours compute the vertices that they share from different points, so these differ by rounding, and pixels
     // could fall in between. Border vertices therefore move outwards by a fraction of a pixel; (u,v) moves along (the
     // limit pass clamps it), so that inside the patch nothing shifts.
@@ -57,10 +70,11 @@ fn vertex(@location(0) uv: vec2f, @builtin(instance_index) instance: u32) -> Ver
     let push = side * vec2f(push_distance(clip, tu), push_distance(clip, tv));
     clip += clip_direction(tu * push.x + tv * push.y);
     // A quarter of a proxy cell at most; none at an extraordinary vertex, where derivatives vanish or blow up.
-    let cell = 0.25 * exp2(-f32(max(frame.proxy_level, patches[patch_id].depth) - patches[patch_id].depth));
+    let depth = depth_of(record);
+    let cell = 0.25 * exp2(-f32(max(frame.proxy_level, depth) - depth));
     let speed = max(vec2f(length(p.du), length(p.dv)), vec2f(1e-30));
     var shift = clamp(push / speed, vec2f(-cell), vec2f(cell));
-    if patches[patch_id].kind == KIND_IRREGULAR && all(uv == vec2f(0.0)) {
+    if is_irregular(record) && all(uv == vec2f(0.0)) {
         shift = vec2f(0.0);
     }
     let xy = clip.xy * frame.scale + frame.shift * clip.z;

@@ -9,9 +9,14 @@ struct LimitPoint {
     normal: vec3f,
 }
 
-@group(0) @binding(0) var<storage, read> patches: array<PatchRecord>;
-@group(0) @binding(1) var<storage, read> points: array<f32>;
-@group(0) @binding(2) var<storage, read> scales: array<Scale>;
+// A texel a patch: first texel in `points`; kind + 256 depth + 65536 levels; first texel in `scales`; 0.
+@group(0) @binding(0) var patches: texture_2d<u32>;
+// Rows of 4 points, 3 texels each: the four x, the four y, the four z. A regular patch has 4 rows. A level of an irregular
+// patch has 9: those of the windows at u >= 1 (5), then those of the window at u < 1 (4); after the last level comes
+// one texel with the limit normal at (0,0).
+@group(0) @binding(1) var points: texture_2d<f32>;
+// lambda^(n-1) and 2^n lambda^(n-1), a texel a level n, of each class.
+@group(0) @binding(2) var scales: texture_2d<f32>;
 
 // Values of the four uniform cubic B-splines at t in [0,1].
 fn basis(t: f32) -> vec4f {
@@ -30,33 +35,37 @@ fn unit_or_zero(v: vec3f) -> vec3f {
     return select(vec3f(0.0), v / size, size > 0.0);
 }
 
-fn limit_point(patch_id: u32, uv: vec2f) -> LimitPoint {
-    let record = patches[patch_id];
+fn depth_of(record: vec4u) -> u32 {
+    return (record.y >> 8u) & 255u;
+}
+
+fn is_irregular(record: vec4u) -> bool {
+    return (record.y & 255u) == KIND_IRREGULAR;
+}
+
+fn limit_point(record: vec4u, uv: vec2f) -> LimitPoint {
     var t = uv;
-    var first = record.first;
-    var row = 12u;
-    var scale = Scale(1.0, 1.0);
+    var first = record.x;
+    var scale = vec2f(1.0);
     var centre = false;
-    if record.kind == KIND_IRREGULAR {
+    if is_irregular(record) {
         // n from the exponent of the larger parameter: exact, where log2 would be off by one ulp. Zeros and denormals
         // (which the adapter may flush) are the extraordinary vertex.
         let exponent = i32(bitcast<u32>(max(uv.x, uv.y)) >> 23u) - 127;
         centre = exponent == -127;
         var n = u32(max(-exponent, 1));
-        var ab = vec2f(1.0);
+        // 2^n from its bits, n at most 126: exact, which exp2 need not be.
+        var ab = uv * bitcast<f32>((n + 127u) << 23u);
         if centre {
             n = CENTRE_LEVEL;
-        } else {
-            // 2^n from its bits, n at most 126: exact, which exp2 need not be.
-            ab = uv * bitcast<f32>((n + 127u) << 23u);
+            ab = vec2f(1.0);
         }
         let window = select(vec2u(0u), vec2u(1u), ab >= vec2f(1.0));
         t = ab - vec2f(window);
-        let level = min(n, record.levels) - 1u;
-        // The grid of a level has rows of 5 points and leaves out its first one.
-        first += (level * WINDOW_POINTS + window.y * 5u + window.x) * 3u - 3u;
-        row = 15u;
-        scale = scales[record.scales + n - 1u];
+        let level = min(n, record.y >> 16u) - 1u;
+        // At u < 1 there is only the window with v >= 1.
+        first += level * LEVEL_TEXELS + select(15u, window.y * 3u, window.x == 1u);
+        scale = textureLoad(scales, at(record.z + n - 1u), 0).xy;
     }
     let bu = basis(t.x);
     let bv = basis(t.y);
@@ -66,21 +75,19 @@ fn limit_point(patch_id: u32, uv: vec2f) -> LimitPoint {
     var du = vec3f(0.0);
     var dv = vec3f(0.0);
     for (var j = 0u; j < 4u; j++) {
-        let at = first + j * row;
-        let p0 = vec3f(points[at], points[at + 1u], points[at + 2u]);
-        let p1 = vec3f(points[at + 3u], points[at + 4u], points[at + 5u]);
-        let p2 = vec3f(points[at + 6u], points[at + 7u], points[at + 8u]);
-        let p3 = vec3f(points[at + 9u], points[at + 10u], points[at + 11u]);
-        let line = p0 * bu.x + p1 * bu.y + p2 * bu.z + p3 * bu.w;
+        let x = textureLoad(points, at(first + 3u * j), 0);
+        let y = textureLoad(points, at(first + 3u * j + 1u), 0);
+        let z = textureLoad(points, at(first + 3u * j + 2u), 0);
+        let line = vec3f(dot(x, bu), dot(y, bu), dot(z, bu));
         position += line * bv[j];
-        du += (p0 * cu.x + p1 * cu.y + p2 * cu.z + p3 * cu.w) * bv[j];
+        du += vec3f(dot(x, cu), dot(y, cu), dot(z, cu)) * bv[j];
         dv += line * cv[j];
     }
     // The normal comes from the normalised derivatives, without any power of two (design.md 3.2).
     var normal = unit_or_zero(cross(unit_or_zero(du), unit_or_zero(dv)));
     if centre {
         position = vec3f(0.0);
-        normal = record.normal;
+        normal = textureLoad(points, at(record.x + (record.y >> 16u) * LEVEL_TEXELS), 0).xyz;
     }
-    return LimitPoint(position * scale.position, du * scale.derivative, dv * scale.derivative, normal);
+    return LimitPoint(position * scale.x, du * scale.y, dv * scale.y, normal);
 }

@@ -1,32 +1,11 @@
-// Buffers that every pass over patches reads; the host twins are in src/gpu/records.rs, compared by tests/shaders.rs.
+// What every pass over patches reads; the host side is src/gpu/records.rs and src/gpu/tables.rs.
 // Lengths are in units of Tables::unit, positions relative to the origin of their patch.
+//
+// Tables are textures TABLE_WIDTH texels wide, read by index. Software adapters gather texels of 8 invocations at once,
+// but walk through storage buffers one invocation at a time (measured on lavapipe: 10 times slower).
 
-struct PatchRecord {
-    // Limit normal at local (0,0) of an irregular patch.
-    normal: vec3f,
-    // First f32 of the patch in `points`.
-    first: u32,
-    kind: u32,
-    // First entry of the patch's class in `scales`.
-    scales: u32,
-    // Depth in the quadtree of its ptex face.
-    depth: u32,
-    // Levels in the table of an irregular patch.
-    levels: u32,
-}
-
-// lambda^(n-1) and 2^n lambda^(n-1) of one level.
-struct Scale {
-    position: f32,
-    derivative: f32,
-}
-
-// What the camera makes of a patch, composed in f64.
-struct PatchView {
-    // Clip-space x, y and w of the patch's origin.
-    clip: vec3f,
-    // The eye relative to the origin.
-    eye: vec3f,
+fn at(index: u32) -> vec2u {
+    return vec2u(index % TABLE_WIDTH, index / TABLE_WIDTH);
 }
 
 struct Frame {

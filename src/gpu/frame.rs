@@ -2,7 +2,7 @@
 
 use super::device::Device;
 use super::passes::{self, Passes, Scene, Targets};
-use super::view::{View, Window};
+use super::view::{Tile, View};
 use super::{GpuError, Pipeline, Tables};
 use glam::{DVec2, DVec3};
 use std::time::{Duration, Instant};
@@ -67,19 +67,18 @@ pub(super) fn render(device: &Device, passes: &Passes, tables: &Tables, view: &V
     let scene = timings.time("scene", || Scene::new(device, tables, view))?;
     let size = view.camera.size;
     let mut rgba8 = vec![0; 4 * size[0] as usize * size[1] as usize];
-    let mut targets: Option<Targets> = None;
-    for tile in Window::tiles(size) {
-        if targets.as_ref().is_none_or(|t| t.size != tile.size) {
-            targets = Some(Targets::new(device, tile.size, view.pipeline));
+    for tile in Tile::cover(size, view.samples) {
+        let targets = timings.time("targets", || Targets::new(device, &tile, view.pipeline));
+        timings.time("visibility", || passes::visibility::run(device, passes, &scene, &targets, &tile))?;
+        for rows in tile.bands() {
+            let band = passes::Band::new(device, &tile, rows)?;
+            timings.time(limit_step(view), || passes::limit::run(device, passes, &scene, &targets, &band))?;
+            timings.time("shade", || passes::shade::run(device, passes, &scene, &targets, &tile, &band))?;
         }
-        let Some(targets) = &targets else { continue };
-        for (sample, window) in tile.samples(view.samples).enumerate() {
-            draw_surface(device, passes, &scene, targets, &window, &mut timings)?;
-            timings.time("shade", || passes::shade::run(device, passes, &scene, targets, &window, sample == 0))?;
-        }
-        timings.time("resolve", || passes::resolve::run(device, passes, targets))?;
+        timings.time("resolve", || passes::resolve::run(device, passes, &targets, &tile))?;
         let pixels: Vec<[u8; 4]> = timings.time("read back", || device.read_texture(&targets.colour))?;
-        paste(&mut rgba8, size, bytemuck::cast_slice(&pixels), &tile, 4);
+        let [origin, tile_size] = tile.pixels();
+        paste(bytemuck::cast_slice_mut::<u8, [u8; 4]>(&mut rgba8), size, &pixels, origin, tile_size);
     }
     Ok(Frame { size, rgba8, timings })
 }
@@ -105,67 +104,75 @@ pub(super) fn inspect(
         field: vec![None; count],
         timings: Timings::default(),
     };
-    for tile in Window::tiles(size) {
-        let targets = Targets::new(device, tile.size, view.pipeline);
-        draw_surface(device, passes, &scene, &targets, &tile, &mut timings)?;
-        timings.time("read back", || read_surface(device, tables, &targets, &tile, &mut image))?;
+    for tile in Tile::cover(size, 1) {
+        let targets = Targets::new(device, &tile, view.pipeline);
+        timings.time("visibility", || passes::visibility::run(device, passes, &scene, &targets, &tile))?;
+        timings.time("read back", || -> Result<(), GpuError> {
+            let ids: Vec<u32> = device.read_texture(&targets.patch)?;
+            let patch: Vec<u32> = ids.iter().map(|id| id.wrapping_sub(1)).collect();
+            paste(&mut image.patch, size, &patch, tile.origin, tile.size);
+            paste(&mut image.uv, size, &device.read_texture(&targets.uv)?, tile.origin, tile.size);
+            Ok(())
+        })?;
+        for rows in tile.bands() {
+            let band = passes::Band::new(device, &tile, rows)?;
+            timings.time(limit_step(view), || passes::limit::run(device, passes, &scene, &targets, &band))?;
+            timings.time("read back", || read_band(device, tables, &targets, &tile, &band, &mut image))?;
+        }
     }
     image.timings = timings;
     Ok(image)
 }
 
-/// Visibility and limit (or polygon) passes of one window.
-fn draw_surface(
-    device: &Device,
-    passes: &Passes,
-    scene: &Scene,
-    targets: &Targets,
-    window: &Window,
-    timings: &mut Timings,
-) -> Result<(), GpuError> {
-    timings.time("visibility", || passes::visibility::run(device, passes, scene, targets, window))?;
-    let name = match scene.view.pipeline {
+fn limit_step(view: &View) -> &'static str {
+    match view.pipeline {
         Pipeline::Limit => "limit",
         Pipeline::Polygon => "polygon",
-    };
-    timings.time(name, || passes::limit::run(device, passes, scene, targets))
+    }
 }
 
-/// Reads the textures of one tile into the image of the whole picture.
-fn read_surface(
+/// Reads the surface textures of one band into the image of the whole picture.
+fn read_band(
     device: &Device,
     tables: &Tables,
     targets: &Targets,
-    tile: &Window,
+    tile: &Tile,
+    band: &passes::Band,
     image: &mut SurfaceImage,
 ) -> Result<(), GpuError> {
     let unit = tables.unit();
-    let ids: Vec<u32> = device.read_texture(&targets.patch)?;
-    let patch: Vec<u32> = ids.iter().map(|id| id.wrapping_sub(1)).collect();
-    let uv: Vec<[f32; 2]> = device.read_texture(&targets.uv)?;
-    let local: Vec<[f32; 4]> = device.read_texture(&targets.position)?;
-    let world = local.iter().zip(&patch).map(|(p, &patch)| match patch {
-        NO_PATCH => DVec3::ZERO,
-        patch => tables.origin(patch as usize) + glam::Vec3::new(p[0], p[1], p[2]).as_dvec3() * unit,
-    });
-    let normal: Vec<[f32; 4]> = device.read_texture(&targets.normal)?;
-    let field: Vec<[f32; 4]> = device.read_texture(&targets.field)?;
-    let value = |f: &[f32; 4]| (f[2] > 0.0).then(|| DVec2::new(f64::from(f[0]), f64::from(f[1])) * unit);
+    let width = tile.size[0] as usize;
+    // The textures hold one row before and after the band.
+    let inner = width..width * (1 + band.rows.len());
+    let origin = [tile.origin[0], tile.origin[1] + band.rows.start];
+    let band_size = [tile.size[0], band.rows.len() as u32];
     let size = image.size;
-    paste(&mut image.patch, size, &patch, tile, 1);
-    paste(&mut image.uv, size, &uv, tile, 1);
-    paste(&mut image.position, size, &world.collect::<Vec<_>>(), tile, 1);
-    paste(&mut image.normal, size, &normal.iter().map(|n| [n[0], n[1], n[2]]).collect::<Vec<_>>(), tile, 1);
-    paste(&mut image.field, size, &field.iter().map(value).collect::<Vec<_>>(), tile, 1);
+    let rows =
+        |texture| -> Result<Vec<[f32; 4]>, GpuError> { Ok(device.read_texture(texture)?[inner.clone()].to_vec()) };
+    let normal: Vec<_> = rows(&targets.normal)?.iter().map(|n| [n[0], n[1], n[2]]).collect();
+    paste(&mut image.normal, size, &normal, origin, band_size);
+    let value = |f: &[f32; 4]| (f[2] > 0.0).then(|| DVec2::new(f64::from(f[0]), f64::from(f[1])) * unit);
+    let field: Vec<_> = rows(&targets.field)?.iter().map(value).collect();
+    paste(&mut image.field, size, &field, origin, band_size);
+    let local: Vec<_> =
+        rows(&targets.position)?.iter().map(|p| DVec3::new(p[0].into(), p[1].into(), p[2].into())).collect();
+    paste(&mut image.position, size, &local, origin, band_size);
+    for y in 0..band_size[1] {
+        for x in 0..band_size[0] {
+            let at = (origin[1] + y) as usize * size[0] as usize + (origin[0] + x) as usize;
+            if image.patch[at] != NO_PATCH {
+                image.position[at] = tables.origin(image.patch[at] as usize) + image.position[at] * unit;
+            }
+        }
+    }
     Ok(())
 }
 
-/// Copies a tile into a picture of `size` pixels of `channels` elements each.
-fn paste<T: Copy>(picture: &mut [T], size: [u32; 2], tile_data: &[T], tile: &Window, channels: usize) {
-    let [width, tile_width] = [size[0] as usize * channels, tile.size[0] as usize * channels];
-    let start = tile.origin[1] as usize * width + tile.origin[0] as usize * channels;
-    for (row, source) in tile_data.chunks_exact(tile_width).enumerate() {
-        let at = start + row * width;
-        picture[at..at + tile_width].copy_from_slice(source);
+/// Copies a rectangle into a picture.
+fn paste<T: Copy>(picture: &mut [T], size: [u32; 2], part: &[T], origin: [u32; 2], part_size: [u32; 2]) {
+    let width = part_size[0] as usize;
+    for (row, source) in part.chunks_exact(width).enumerate() {
+        let at = (origin[1] as usize + row) * size[0] as usize + origin[0] as usize;
+        picture[at..at + width].copy_from_slice(source);
     }
 }

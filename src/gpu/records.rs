@@ -1,49 +1,49 @@
-//! Host twins of the structs in `shaders/`, field by field; `tests/shaders.rs` compares offsets with naga's layout.
+//! Host twins of the structs in `shaders/` (tables are textures, see [`tables`](super::tables)), field by field; `tests/shaders.rs` compares offsets with naga's layout.
 //!
 //! Lengths are in units of [`Tables::unit`](super::Tables::unit). Padding is explicit: `vec3f` aligns to 16 bytes.
 
 use bytemuck::{Pod, Zeroable};
 
-/// `PatchRecord`, shaders/shared/records.wgsl.
+/// A vertex of the proxy, as vertex attributes 0 and 1 of shaders/visibility.wgsl.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable, PartialEq)]
-pub struct PatchRecord {
-    /// Limit normal at local (0,0) of an irregular patch.
-    pub normal: [f32; 3],
-    /// First f32 of the patch in the points.
-    pub first: u32,
-    /// [`KIND_REGULAR`](super::shader::KIND_REGULAR) or [`KIND_IRREGULAR`](super::shader::KIND_IRREGULAR).
-    pub kind: u32,
-    /// First [`Scale`] of the patch's class.
-    pub scales: u32,
-    /// Depth in the quadtree of the ptex face.
-    pub depth: u32,
-    /// Levels stored for an irregular patch.
-    pub levels: u32,
+pub struct ProxyVertex {
+    /// Patch-local parameters.
+    pub uv: [f32; 2],
+    /// Which patch of its group.
+    pub member: u32,
 }
 
-/// `Scale`, shaders/shared/records.wgsl: lambda^(n-1) and 2^n lambda^(n-1).
-#[repr(C)]
-#[derive(Debug, Clone, Copy, Pod, Zeroable, PartialEq)]
-pub struct Scale {
-    /// Of positions.
-    pub position: f32,
-    /// Of first derivatives.
-    pub derivative: f32,
-}
-
-/// `PatchView`, shaders/shared/records.wgsl.
+/// `Draw`, shaders/visibility.wgsl: which patches an instanced draw covers.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct PatchView {
-    /// Clip-space x, y, w of the patch's origin.
-    pub clip: [f32; 3],
+pub struct DrawRecord {
+    /// First patch in the drawing order.
+    pub first: u32,
+    /// Patches an instance.
+    pub group_size: u32,
     /// Zero.
-    pub padding0: f32,
-    /// Eye relative to the origin.
-    pub eye: [f32; 3],
+    pub padding: [u32; 2],
+}
+
+/// `Band`, shaders/shared/band.wgsl.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct BandRecord {
+    /// Row of the tile that the first row of the surface textures holds; -1 for the first band.
+    pub first: i32,
+    /// Rows of the tile.
+    pub rows: i32,
     /// Zero.
-    pub padding1: f32,
+    pub padding: [i32; 2],
+}
+
+/// `Resolve`, shaders/resolve.wgsl.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct ResolveRecord {
+    /// Samples a pixel each way.
+    pub samples: i32,
 }
 
 /// `Frame`, shaders/shared/records.wgsl.
@@ -138,20 +138,18 @@ pub struct ShadeRecord {
     pub pattern: u32,
     /// Linear RGB of the background at the top of the picture.
     pub top: [f32; 3],
-    /// 1 / samples.
-    pub pixel: f32,
+    /// First row of the tile in the picture, in samples.
+    pub row: f32,
     /// Linear RGB of the background at the bottom.
     pub bottom: [f32; 3],
-    /// 1 / samples^2.
-    pub weight: f32,
+    /// Rows of the picture, in samples.
+    pub rows: f32,
     /// Unit vector up, world space.
     pub up: [f32; 3],
-    /// First row of the target in the picture.
-    pub row: f32,
+    /// Zero.
+    pub padding0: f32,
     /// From plane coordinates to texture coordinates.
     pub picture_scale: [f32; 2],
-    /// Rows of the picture.
-    pub rows: f32,
     /// Zero.
-    pub padding: f32,
+    pub padding1: [f32; 2],
 }

@@ -1,6 +1,7 @@
 //! WGSL sources: which files make up a pass, and the constants that Rust shares with them.
 
-use crate::stam::{LEVELS, WINDOW_POINTS};
+use super::NO_PATCH;
+use crate::stam::LEVELS;
 
 /// Kind of a patch of 16 points.
 pub const KIND_REGULAR: u32 = 0;
@@ -16,8 +17,12 @@ pub const PATTERN_CIRCLES: u32 = 2;
 pub const PATTERN_PICTURE: u32 = 3;
 /// Invocations in a workgroup of the compute passes.
 pub const WORKGROUP: u32 = 64;
-/// Highest level n with 2^-n a normal f32: the length of a class's [`Scale`](super::records::Scale) table.
+/// Highest level n with 2^-n a normal f32: the number of scales of a class.
 pub const SCALE_LEVELS: u32 = 126;
+/// Texels in a row of a table texture; the tables of the largest meshes then have some 10,000 rows.
+pub const TABLE_WIDTH: u32 = 4096;
+/// Texels of one level of an irregular patch: 9 rows of 4 points, x, y and z each.
+pub const LEVEL_TEXELS: u32 = 27;
 /// Distance in pixels by which the borders of proxy patches overlap: large against the rasteriser's grid of 1/256 pixel
 /// on which vertices that differ by rounding may land one step apart, small against a pixel.
 pub const PUSH: f32 = 0.1;
@@ -46,6 +51,7 @@ const RECORDS: &str = include_str!("../../shaders/shared/records.wgsl");
 const LIMIT_POINT: &str = include_str!("../../shaders/shared/limit_point.wgsl");
 const FULLSCREEN: &str = include_str!("../../shaders/shared/fullscreen.wgsl");
 const SURFACE: &str = include_str!("../../shaders/shared/surface.wgsl");
+const BAND: &str = include_str!("../../shaders/shared/band.wgsl");
 const PATTERN: &str = include_str!("../../shaders/shared/pattern.wgsl");
 const REFLECTION: &str = include_str!("../../shaders/field/reflection.wgsl");
 
@@ -55,16 +61,16 @@ pub const VISIBILITY: Module =
 /// Exact surface per pixel.
 pub const LIMIT: Module = Module {
     name: "limit",
-    files: &[RECORDS, LIMIT_POINT, REFLECTION, SURFACE, FULLSCREEN, include_str!("../../shaders/limit.wgsl")],
+    files: &[RECORDS, LIMIT_POINT, REFLECTION, BAND, SURFACE, FULLSCREEN, include_str!("../../shaders/limit.wgsl")],
 };
 /// Interpolated surface per pixel.
 pub const POLYGON: Module = Module {
     name: "polygon",
-    files: &[RECORDS, REFLECTION, SURFACE, FULLSCREEN, include_str!("../../shaders/polygon.wgsl")],
+    files: &[RECORDS, REFLECTION, BAND, SURFACE, FULLSCREEN, include_str!("../../shaders/polygon.wgsl")],
 };
 /// Colour.
 pub const SHADE: Module =
-    Module { name: "shade", files: &[REFLECTION, PATTERN, FULLSCREEN, include_str!("../../shaders/shade.wgsl")] };
+    Module { name: "shade", files: &[REFLECTION, BAND, PATTERN, FULLSCREEN, include_str!("../../shaders/shade.wgsl")] };
 /// Linear sum to sRGB.
 pub const RESOLVE: Module =
     Module { name: "resolve", files: &[FULLSCREEN, include_str!("../../shaders/resolve.wgsl")] };
@@ -84,8 +90,10 @@ fn constants() -> String {
         ("PATTERN_CIRCLES", PATTERN_CIRCLES),
         ("PATTERN_PICTURE", PATTERN_PICTURE),
         ("WORKGROUP", WORKGROUP),
-        ("WINDOW_POINTS", WINDOW_POINTS as u32),
+        ("TABLE_WIDTH", TABLE_WIDTH),
+        ("LEVEL_TEXELS", LEVEL_TEXELS),
         ("CENTRE_LEVEL", LEVELS as u32),
+        ("NO_PATCH", NO_PATCH),
     ];
     let mut text: String = counts.iter().map(|(name, value)| format!("const {name} = {value}u;\n")).collect();
     text.push_str(&format!("const PUSH = {PUSH:?};\n"));

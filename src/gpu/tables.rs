@@ -9,23 +9,27 @@
 //! which rasterisation interpolated can reach; beyond, the last level serves again with its power of lambda.
 //!
 //! # Practice
-//! One buffer of points, the regular patches first (192 B each), then the irregular ones (6,912 B each). Everything is
-//! divided by [`Tables::unit`], a power of two near the size of the object, so that models in microns and in
-//! kilometres use the same part of f32.
+//! One texture of points, the regular patches first (192 B each), then the irregular ones (10.4 kB each). The layout of a
+//! texel is described in `shaders/shared/limit_point.wgsl`. Everything is divided by [`Tables::unit`], a power of two
+//! near the size of the object, so that models in microns and in kilometres use the same part of f32.
 
 use super::GpuError;
 use super::device::Device;
-use super::records::{PatchRecord, Scale};
-use super::shader::{KIND_IRREGULAR, KIND_REGULAR, SCALE_LEVELS};
-use crate::stam::{LimitSurface, Net, WINDOW_POINTS};
+use super::shader::{KIND_IRREGULAR, KIND_REGULAR, LEVEL_TEXELS, SCALE_LEVELS};
+use crate::stam::{LimitSurface, Net};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::collections::HashMap;
 
 /// Levels stored per irregular patch.
 pub const TABLE_LEVELS: usize = 24;
-const REGULAR_FLOATS: usize = 16 * 3;
-const IRREGULAR_FLOATS: usize = TABLE_LEVELS * WINDOW_POINTS * 3;
+/// Texels of a regular patch: 4 rows of 4 points, x, y and z each.
+const REGULAR_TEXELS: usize = 12;
+/// Texels of an irregular patch: its levels and its normal.
+const IRREGULAR_TEXELS: usize = TABLE_LEVELS * LEVEL_TEXELS as usize + 1;
+/// First points of the windows' rows in a level's grid of 5x5 points without the first: the rows of
+/// the windows at u >= 1, then those at u < 1.
+const WINDOW_ROWS: [usize; 9] = [0, 5, 10, 15, 20, 4, 9, 14, 19];
 
 /// One patch, as the tables want it.
 #[derive(Debug, Clone)]
@@ -99,27 +103,28 @@ impl PatchSource for [PatchNet] {
     }
 }
 
-/// Contents of the buffers.
+/// Contents of the textures.
 #[derive(Debug, Default)]
 struct Packed {
-    records: Vec<PatchRecord>,
-    points: Vec<f32>,
-    scales: Vec<Scale>,
+    records: Vec<[u32; 4]>,
+    points: Vec<[f32; 4]>,
+    scales: Vec<[f32; 2]>,
     origins: Vec<DVec3>,
-    transitions: Vec<u8>,
+    cells: Vec<(u8, u8)>,
 }
 
 /// The tables of a surface on the adapter.
 #[derive(Debug)]
 pub struct Tables {
-    pub(super) records: wgpu::Buffer,
-    pub(super) points: wgpu::Buffer,
-    pub(super) scales: wgpu::Buffer,
+    records: wgpu::Texture,
+    points: wgpu::Texture,
+    scales: wgpu::Texture,
     /// Origin of every patch, world space.
     pub(super) origins: Vec<DVec3>,
     /// Depth and transition bits of every patch.
     pub(super) cells: Vec<(u8, u8)>,
-    pub(super) bounds: [DVec3; 2],
+    bounds: [DVec3; 2],
+    size: u64,
     unit: f64,
 }
 
@@ -146,28 +151,34 @@ impl Tables {
 
     /// Bytes on the adapter.
     pub fn size(&self) -> u64 {
-        self.records.size() + self.points.size() + self.scales.size()
+        self.size
+    }
+
+    /// Views of patch records, points and scales: bindings 0, 1 and 2 of group 0 in every pass that evaluates.
+    pub(super) fn views(&self) -> [wgpu::TextureView; 3] {
+        [&self.records, &self.points, &self.scales].map(|texture| texture.create_view(&Default::default()))
     }
 }
 
-/// Bytes that the points of a surface take on the adapter.
-pub fn points_size(regular: usize, irregular: usize) -> u64 {
-    4 * (regular as u64 * REGULAR_FLOATS as u64 + irregular as u64 * IRREGULAR_FLOATS as u64)
+/// Texels that the points of a surface take (16 bytes each).
+pub fn points_texels(regular: usize, irregular: usize) -> u64 {
+    regular as u64 * REGULAR_TEXELS as u64 + irregular as u64 * IRREGULAR_TEXELS as u64
 }
 
 pub(super) fn upload<S: PatchSource + ?Sized>(device: &Device, source: &S) -> Result<Tables, GpuError> {
+    const POINTS: &str = "the points of the patches";
     let bounds = source.bounds();
     let diagonal = (bounds[1] - bounds[0]).length();
     let unit = if diagonal > 0.0 && diagonal.is_finite() { diagonal.log2().round().exp2() } else { 1.0 };
-    let irregular = (0..source.count()).filter(|&i| source.is_irregular(i)).count();
-    device.fits("the points of the patches", points_size(source.count() - irregular, irregular))?;
-    let packed = pack(source, unit);
-    let storage = wgpu::BufferUsages::STORAGE;
+    let (irregular, regular): (Vec<usize>, Vec<usize>) = (0..source.count()).partition(|&i| source.is_irregular(i));
+    device.table_fits(POINTS, points_texels(regular.len(), irregular.len()), 16)?;
+    let packed = pack(source, &regular, &irregular, unit);
     Ok(Tables {
-        records: device.buffer("the records of the patches", &packed.records, storage)?,
-        points: device.buffer("the points of the patches", &packed.points, storage)?,
-        scales: device.buffer("the powers of lambda", &packed.scales, storage)?,
-        cells: packed.records.iter().map(|r| r.depth as u8).zip(packed.transitions).collect(),
+        size: (16 * packed.records.len() + 16 * packed.points.len() + 8 * packed.scales.len()) as u64,
+        records: device.table("the records of the patches", &packed.records, wgpu::TextureFormat::Rgba32Uint)?,
+        points: device.table(POINTS, &packed.points, wgpu::TextureFormat::Rgba32Float)?,
+        scales: device.table("the powers of lambda", &packed.scales, wgpu::TextureFormat::Rg32Float)?,
+        cells: packed.cells,
         origins: packed.origins,
         bounds,
         unit,
@@ -177,73 +188,70 @@ pub(super) fn upload<S: PatchSource + ?Sized>(device: &Device, source: &S) -> Re
 /// What the parallel part finds out about a patch.
 struct Placed {
     patch: usize,
-    record: PatchRecord,
-    transition: u8,
+    record: [u32; 4],
+    cell: (u8, u8),
     origin: DVec3,
-    lambda: f64,
+    lambda: Option<f64>,
 }
 
-fn pack<S: PatchSource + ?Sized>(source: &S, unit: f64) -> Packed {
-    let (irregular, regular): (Vec<usize>, Vec<usize>) = (0..source.count()).partition(|&i| source.is_irregular(i));
-    let split = regular.len() * REGULAR_FLOATS;
-    let mut points = vec![0f32; split + irregular.len() * IRREGULAR_FLOATS];
+fn pack<S: PatchSource + ?Sized>(source: &S, regular: &[usize], irregular: &[usize], unit: f64) -> Packed {
+    let split = regular.len() * REGULAR_TEXELS;
+    let mut points = vec![[0f32; 4]; split + irregular.len() * IRREGULAR_TEXELS];
     let (first_block, second_block) = points.split_at_mut(split);
-    let place = |start: usize, size: usize, (k, (floats, &patch)): (usize, (&mut [f32], &usize))| {
-        place(source.patch(patch), patch, (start + k * size) as u32, floats, unit)
+    let block = |texels: &mut [[f32; 4]], patches: &[usize], start: usize, size: usize| -> Vec<Placed> {
+        let items = texels.par_chunks_exact_mut(size).zip(patches).enumerate();
+        items.map(|(k, (texels, &i))| place(source.patch(i), i, start + k * size, texels, unit)).collect()
     };
-    let mut placed: Vec<Placed> = first_block
-        .par_chunks_exact_mut(REGULAR_FLOATS)
-        .zip(&regular)
-        .enumerate()
-        .map(|item| place(0, REGULAR_FLOATS, item))
-        .chain(
-            second_block
-                .par_chunks_exact_mut(IRREGULAR_FLOATS)
-                .zip(&irregular)
-                .enumerate()
-                .map(|item| place(split, IRREGULAR_FLOATS, item)),
-        )
-        .collect();
-    placed.sort_by_key(|p| p.patch);
+    let mut placed = block(first_block, regular, 0, REGULAR_TEXELS);
+    placed.extend(block(second_block, irregular, split, IRREGULAR_TEXELS));
+    placed.sort_unstable_by_key(|p| p.patch);
     let mut packed = Packed { points, ..Packed::default() };
     let mut classes: HashMap<u64, u32> = HashMap::new();
     for mut p in placed {
-        if p.record.kind == KIND_IRREGULAR {
-            p.record.scales = *classes.entry(p.lambda.to_bits()).or_insert_with(|| {
+        if let Some(lambda) = p.lambda {
+            p.record[2] = *classes.entry(lambda.to_bits()).or_insert_with(|| {
                 let first = packed.scales.len() as u32;
-                packed.scales.extend((1..=SCALE_LEVELS as i32).map(|n| scale(p.lambda, n)));
+                packed.scales.extend((0..SCALE_LEVELS as i32).map(|n| scale(lambda, n)));
                 first
             });
         }
         packed.records.push(p.record);
         packed.origins.push(p.origin);
-        packed.transitions.push(p.transition);
+        packed.cells.push(p.cell);
     }
     packed
 }
 
-fn scale(lambda: f64, n: i32) -> Scale {
-    Scale { position: lambda.powi(n - 1) as f32, derivative: (2.0 * (2.0 * lambda).powi(n - 1)) as f32 }
+/// lambda^m and 2^(m+1) lambda^m for level m+1.
+fn scale(lambda: f64, m: i32) -> [f32; 2] {
+    [lambda.powi(m) as f32, (2.0 * (2.0 * lambda).powi(m)) as f32]
 }
 
-/// Writes the points of one patch.
-fn place(patch_net: PatchNet, patch: usize, first: u32, floats: &mut [f32], unit: f64) -> Placed {
+/// Writes the texels of one patch, which start at `first`.
+fn place(patch_net: PatchNet, patch: usize, first: usize, texels: &mut [[f32; 4]], unit: f64) -> Placed {
     let PatchNet { depth, transition, net, normal } = patch_net;
-    let normal = normal.as_vec3().to_array();
-    let mut record = PatchRecord { normal, first, kind: KIND_REGULAR, scales: 0, depth: u32::from(depth), levels: 0 };
-    let mut write = |at: usize, p: DVec3| floats[3 * at..3 * at + 3].copy_from_slice(&(p / unit).as_vec3().to_array());
-    let (origin, lambda) = match net {
+    let mut at = 0;
+    let mut row = |points: &[DVec3]| {
+        let local: [DVec3; 4] = std::array::from_fn(|k| points[k] / unit);
+        texels[at] = local.map(|p| p.x as f32);
+        texels[at + 1] = local.map(|p| p.y as f32);
+        texels[at + 2] = local.map(|p| p.z as f32);
+        at += 3;
+    };
+    let (origin, kind, levels, lambda) = match net {
         Net::Regular(points) => {
             let origin = points[5];
-            points.iter().enumerate().for_each(|(k, &p)| write(k, p - origin));
-            (origin, 0.0)
+            points.map(|p| p - origin).chunks_exact(4).for_each(row);
+            (origin, KIND_REGULAR, 0, None)
         }
         Net::Irregular { limit, lambda, levels } => {
-            record.kind = KIND_IRREGULAR;
-            record.levels = levels.len().min(TABLE_LEVELS) as u32;
-            levels.iter().flatten().take(TABLE_LEVELS * WINDOW_POINTS).enumerate().for_each(|(k, &p)| write(k, p));
-            (limit, lambda)
+            let stored = levels.len().min(TABLE_LEVELS);
+            levels[..stored].iter().for_each(|grid| WINDOW_ROWS.iter().for_each(|&i| row(&grid[i..i + 4])));
+            let [x, y, z] = normal.as_vec3().to_array();
+            texels[stored * LEVEL_TEXELS as usize] = [x, y, z, 0.0];
+            (limit, KIND_IRREGULAR, stored as u32, Some(lambda))
         }
     };
-    Placed { patch, record, transition, origin, lambda }
+    let record = [first as u32, kind | u32::from(depth) << 8 | levels << 16, 0, 0];
+    Placed { patch, record, cell: (depth, transition), origin, lambda }
 }

@@ -1,11 +1,12 @@
 //! What to draw, and its f64-composed records for the shaders.
 
-use super::records::{FrameRecord, LightRecord, PatchView, ShadeRecord};
+use super::records::{FrameRecord, LightRecord, ShadeRecord};
 use super::shader::{PATTERN_CIRCLES, PATTERN_LATTICE, PATTERN_PICTURE, PATTERN_STRIPES};
 use super::{GpuError, Tables};
 use crate::field::{Camera, Field, Light, Pattern};
 use glam::DVec3;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Highest level of the proxy tessellation: 256 parts a face.
 pub const MAX_PROXY_LEVEL: u32 = 8;
@@ -125,24 +126,27 @@ impl View {
         }
     }
 
-    /// Every patch as this camera sees it; composed in f64, then rounded (design.md 4, "Projection").
-    pub(super) fn patch_views(&self, tables: &Tables) -> Vec<PatchView> {
+    /// Every patch as this camera sees it, composed in f64, then rounded (design.md 4, "Projection"): clip-space x, y, w of
+    /// its origin; the eye relative to its origin.
+    pub(super) fn patch_views(&self, tables: &Tables) -> Vec<[[f32; 4]; 2]> {
         let axes = self.camera.axes();
         let unit = tables.unit();
         let one = |origin: &DVec3| {
             let d = (*origin - self.camera.eye) / unit;
             let clip = [axes.scale[0] * axes.right.dot(d), axes.scale[1] * axes.up.dot(d), axes.forward.dot(d)];
-            PatchView { clip: clip.map(|x| x as f32), padding0: 0.0, eye: (-d).as_vec3().to_array(), padding1: 0.0 }
+            let [x, y, w] = clip.map(|x| x as f32);
+            let [ex, ey, ez] = (-d).as_vec3().to_array();
+            [[x, y, w, 0.0], [ex, ey, ez, 0.0]]
         };
         tables.origins.par_iter().map(one).collect()
     }
 
-    /// The projection of the part of the picture that `window` draws.
-    pub(super) fn frame_record(&self, tables: &Tables, window: &Window) -> FrameRecord {
+    /// The projection of the part of the picture that `tile` draws.
+    pub(super) fn frame_record(&self, tables: &Tables, tile: &Tile) -> FrameRecord {
         let axes = self.camera.axes();
-        let [w, h] = self.camera.size.map(f64::from);
-        let [tw, th] = window.size.map(f64::from);
-        let [x, y] = [0, 1].map(|k| f64::from(window.origin[k]) + window.jitter[k]);
+        let [w, h] = self.camera.size.map(|n| f64::from(n * tile.samples));
+        let [tw, th] = tile.size.map(f64::from);
+        let [x, y] = tile.origin.map(f64::from);
         let row = |v: DVec3| v.as_vec3().to_array();
         FrameRecord {
             clip_x: row(axes.right * axes.scale[0]),
@@ -176,7 +180,7 @@ impl View {
     }
 
     /// Colours and pattern.
-    pub(super) fn shade_record(&self, tables: &Tables, window: &Window) -> ShadeRecord {
+    pub(super) fn shade_record(&self, tables: &Tables, tile: &Tile) -> ShadeRecord {
         let (pattern, width) = match &self.pattern {
             Pattern::Stripes { width } => (PATTERN_STRIPES, *width),
             Pattern::Lattice { width } => (PATTERN_LATTICE, *width),
@@ -184,51 +188,67 @@ impl View {
             Pattern::Picture(_) => (PATTERN_PICTURE, 0.0),
         };
         let Palette { paint, tube, top, bottom } = self.palette;
-        let samples = self.samples as f32;
         ShadeRecord {
             paint,
             width: width as f32,
             tube,
             pattern,
             top,
-            pixel: 1.0 / samples,
+            row: tile.origin[1] as f32,
             bottom,
-            weight: 1.0 / (samples * samples),
+            rows: (self.camera.size[1] * tile.samples) as f32,
             up: self.camera.up.normalize_or_zero().as_vec3().to_array(),
-            row: (f64::from(window.origin[1]) + window.jitter[1]) as f32,
+            padding0: 0.0,
             picture_scale: (self.pattern.picture_scale(self.light()) * tables.unit()).as_vec2().to_array(),
-            rows: self.camera.size[1] as f32,
-            padding: 0.0,
+            padding1: [0.0; 2],
         }
     }
 }
 
-/// A rectangle of the picture and the place inside its pixels that one pass samples.
+/// A rectangle of the picture, in samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Window {
-    /// First pixel.
+pub(super) struct Tile {
+    /// First sample.
     pub origin: [u32; 2],
-    /// Pixels.
+    /// Samples.
     pub size: [u32; 2],
-    /// Offset from the pixel's centre, in pixels.
-    pub jitter: [f64; 2],
+    /// Samples a pixel each way; divides origin and size.
+    pub samples: u32,
 }
 
-impl Window {
-    /// Side of a tile: bounds the memory of the intermediate textures (76 bytes a pixel) whatever the picture's size.
-    pub const TILE: u32 = 2048;
+impl Tile {
+    /// Largest side in samples: with [`Self::BAND`] it bounds the memory of the intermediate textures to about 170 MiB,
+    /// whatever the size of the picture.
+    const SIDE: u32 = 2048;
+    /// Samples of a tile whose surface (48 bytes each) exists at a time.
+    const BAND: u32 = 1 << 20;
 
-    /// Tiles of a picture, at the pixel centres.
-    pub fn tiles(size: [u32; 2]) -> Vec<Window> {
-        let starts = |n: u32| (0..n).step_by(Self::TILE as usize);
-        let part = |start: u32, n: u32| (n - start).min(Self::TILE);
-        let window = |x, y| Window { origin: [x, y], size: [part(x, size[0]), part(y, size[1])], jitter: [0.0; 2] };
-        starts(size[1]).flat_map(|y| starts(size[0]).map(move |x| window(x, y))).collect()
+    /// Tiles of a picture of `size` pixels.
+    pub fn cover(size: [u32; 2], samples: u32) -> Vec<Tile> {
+        let side = Self::SIDE / samples * samples;
+        let total = size.map(|n| n * samples);
+        let starts = |n: u32| (0..n).step_by(side as usize);
+        let tile = |x: u32, y: u32| Tile {
+            origin: [x, y],
+            size: [(total[0] - x).min(side), (total[1] - y).min(side)],
+            samples,
+        };
+        starts(total[1]).flat_map(|y| starts(total[0]).map(move |x| tile(x, y))).collect()
     }
 
-    /// The regular grid of samples x samples places inside a pixel.
-    pub fn samples(self, samples: u32) -> impl Iterator<Item = Window> {
-        let place = move |i: u32| (f64::from(i) + 0.5) / f64::from(samples) - 0.5;
-        (0..samples * samples).map(move |k| Window { jitter: [place(k % samples), place(k / samples)], ..self })
+    /// Rows of a band of this tile.
+    pub fn band_rows(&self) -> u32 {
+        (Self::BAND / self.size[0]).clamp(1, self.size[1])
+    }
+
+    /// Row ranges that cover the tile.
+    pub fn bands(&self) -> impl Iterator<Item = Range<u32>> + use<> {
+        let (rows, all) = (self.band_rows(), self.size[1]);
+        (0..all).step_by(rows as usize).map(move |y| y..(y + rows).min(all))
+    }
+
+    /// First pixel and size in pixels.
+    pub fn pixels(&self) -> [[u32; 2]; 2] {
+        [self.origin, self.size].map(|v| v.map(|n| n / self.samples))
     }
 }

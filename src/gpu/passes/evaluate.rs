@@ -7,6 +7,7 @@ use crate::gpu::shader::{EVALUATE, WORKGROUP};
 use crate::gpu::{GpuError, Sample, Tables};
 use crate::stam::Jet;
 use glam::Vec3;
+use wgpu::BindingResource::TextureView;
 use wgpu::BufferUsages;
 
 /// Samples a dispatch: 65,535 workgroups at most, and 64 MiB of results.
@@ -47,15 +48,12 @@ fn run_batch(device: &Device, passes: &Passes, tables: &Tables, samples: &[Sampl
         usage: BufferUsages::STORAGE | BufferUsages::COPY_SRC,
         mapped_at_creation: false,
     });
+    let [records, points, scales] = tables.views();
     let groups = [
         bind(
             device,
             pipeline.get_bind_group_layout(0),
-            &[
-                (0, tables.records.as_entire_binding()),
-                (1, tables.points.as_entire_binding()),
-                (2, tables.scales.as_entire_binding()),
-            ],
+            &[(0, TextureView(&records)), (1, TextureView(&points)), (2, TextureView(&scales))],
         ),
         bind(
             device,

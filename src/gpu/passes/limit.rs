@@ -1,6 +1,8 @@
 //! `shaders/limit.wgsl` and `shaders/polygon.wgsl`: position, normal and field of every pixel.
 
-use super::{CLEAR, Passes, SURFACE_FORMAT, Scene, Targets, attachment, bind, draw_fullscreen, fullscreen, whole};
+use super::{
+    Band, CLEAR, Passes, SURFACE_FORMAT, Scene, Targets, attachment, bind, draw_fullscreen, fullscreen, whole,
+};
 use crate::gpu::device::Device;
 use crate::gpu::shader::{LIMIT, POLYGON};
 use crate::gpu::{GpuError, Pipeline};
@@ -16,16 +18,27 @@ pub fn pipeline<'a>(passes: &'a Passes, device: &Device, pipeline: Pipeline) -> 
     }
 }
 
-pub fn run(device: &Device, passes: &Passes, scene: &Scene<'_>, targets: &Targets) -> Result<(), GpuError> {
+pub fn run(
+    device: &Device,
+    passes: &Passes,
+    scene: &Scene<'_>,
+    targets: &Targets,
+    band: &Band,
+) -> Result<(), GpuError> {
     let pipeline = pipeline(passes, device, scene.view.pipeline);
-    let mut resources = vec![(3, scene.patch_views.as_entire_binding()), (4, scene.light.as_entire_binding())];
+    let [records, points, scales, patch_views] = scene.table_views();
+    let mut resources = vec![
+        (3, TextureView(&patch_views)),
+        (4, scene.light.as_entire_binding()),
+        (5, band.record.as_entire_binding()),
+    ];
     let patch = whole(&targets.patch);
     let inputs: Vec<_> = match &targets.proxy {
         Some(proxy) => proxy.iter().map(whole).collect(),
         None => {
-            resources.push((0, scene.tables.records.as_entire_binding()));
-            resources.push((1, scene.tables.points.as_entire_binding()));
-            resources.push((2, scene.tables.scales.as_entire_binding()));
+            resources.push((0, TextureView(&records)));
+            resources.push((1, TextureView(&points)));
+            resources.push((2, TextureView(&scales)));
             vec![whole(&targets.uv)]
         }
     };
@@ -37,5 +50,5 @@ pub fn run(device: &Device, passes: &Passes, scene: &Scene<'_>, targets: &Target
     ];
     let views = [&targets.position, &targets.normal, &targets.field].map(whole);
     let attachments: Vec<_> = views.iter().map(|view| attachment(view, CLEAR)).collect();
-    draw_fullscreen(device, pipeline, &groups, &attachments)
+    draw_fullscreen(device, pipeline, &groups, &attachments, None)
 }

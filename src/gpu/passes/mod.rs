@@ -8,8 +8,11 @@ pub mod visibility;
 
 use super::device::Device;
 use super::proxy::Proxy;
+use super::records::BandRecord;
 use super::shader::Module;
+use super::view::Tile;
 use super::{GpuError, Pipeline, Tables, View};
+use std::ops::Range;
 use std::sync::OnceLock;
 use wgpu::{BufferUsages, TextureFormat, TextureUsages};
 
@@ -39,11 +42,11 @@ impl Passes {
     }
 }
 
-/// What stays the same in all windows of a picture.
+/// What stays the same in all tiles of a picture.
 pub(super) struct Scene<'a> {
     pub tables: &'a Tables,
     pub view: &'a View,
-    pub patch_views: wgpu::Buffer,
+    pub patch_views: wgpu::Texture,
     pub light: wgpu::Buffer,
     pub proxy: visibility::ProxyBuffers,
     pub picture: shade::PictureTexture,
@@ -55,7 +58,10 @@ impl<'a> Scene<'a> {
         Ok(Scene {
             tables,
             view,
-            patch_views: device.buffer("the views of the patches", &view.patch_views(tables), BufferUsages::STORAGE)?,
+            patch_views: {
+                let texels = view.patch_views(tables);
+                device.table("the views of the patches", texels.as_flattened(), SURFACE_FORMAT)?
+            },
             light: device.buffer("the light", &[view.light_record(tables)], BufferUsages::UNIFORM)?,
             proxy: visibility::ProxyBuffers::new(device, &proxy)?,
             picture: shade::PictureTexture::new(device, view)?,
@@ -63,9 +69,30 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// The textures between the passes.
+impl Scene<'_> {
+    /// Texture views of the tables and of the patch views, at bindings 0 to 3.
+    fn table_views(&self) -> [wgpu::TextureView; 4] {
+        let [records, points, scales] = self.tables.views();
+        [records, points, scales, whole(&self.patch_views)]
+    }
+}
+
+/// Rows of a tile whose surface exists at a time.
+pub(super) struct Band {
+    pub rows: Range<u32>,
+    record: wgpu::Buffer,
+}
+
+impl Band {
+    pub fn new(device: &Device, tile: &Tile, rows: Range<u32>) -> Result<Band, GpuError> {
+        // One row more on each side, for the field's derivative.
+        let record = BandRecord { first: rows.start as i32 - 1, rows: tile.size[1] as i32, padding: [0; 2] };
+        Ok(Band { rows, record: device.buffer("the band", &[record], BufferUsages::UNIFORM)? })
+    }
+}
+
+/// The textures between the passes, for one tile.
 pub(super) struct Targets {
-    pub size: [u32; 2],
     /// Patch id + 1.
     pub patch: wgpu::Texture,
     pub uv: wgpu::Texture,
@@ -75,8 +102,8 @@ pub(super) struct Targets {
     pub position: wgpu::Texture,
     pub normal: wgpu::Texture,
     pub field: wgpu::Texture,
-    /// Sum of the samples, linear.
-    pub sum: wgpu::Texture,
+    /// Shaded samples, linear.
+    pub samples: wgpu::Texture,
     pub colour: wgpu::Texture,
 }
 
@@ -84,12 +111,12 @@ const PATCH_FORMAT: TextureFormat = TextureFormat::R32Uint;
 const UV_FORMAT: TextureFormat = TextureFormat::Rg32Float;
 const DEPTH_FORMAT: TextureFormat = TextureFormat::Depth32Float;
 const SURFACE_FORMAT: TextureFormat = TextureFormat::Rgba32Float;
-const SUM_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
+const SAMPLE_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
 const COLOUR_FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
 
 impl Targets {
-    pub fn new(device: &Device, size: [u32; 2], pipeline: Pipeline) -> Targets {
-        let texture = |format| {
+    pub fn new(device: &Device, tile: &Tile, pipeline: Pipeline) -> Targets {
+        let texture = |size: [u32; 2], format| {
             device.device.create_texture(&wgpu::TextureDescriptor {
                 label: None,
                 size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
@@ -101,17 +128,18 @@ impl Targets {
                 view_formats: &[],
             })
         };
+        let size = tile.size;
+        let band = [size[0], tile.band_rows() + 2];
         Targets {
-            size,
-            patch: texture(PATCH_FORMAT),
-            uv: texture(UV_FORMAT),
-            depth: texture(DEPTH_FORMAT),
-            proxy: (pipeline == Pipeline::Polygon).then(|| [texture(SURFACE_FORMAT), texture(SURFACE_FORMAT)]),
-            position: texture(SURFACE_FORMAT),
-            normal: texture(SURFACE_FORMAT),
-            field: texture(SURFACE_FORMAT),
-            sum: texture(SUM_FORMAT),
-            colour: texture(COLOUR_FORMAT),
+            patch: texture(size, PATCH_FORMAT),
+            uv: texture(size, UV_FORMAT),
+            depth: texture(size, DEPTH_FORMAT),
+            proxy: (pipeline == Pipeline::Polygon).then(|| [SURFACE_FORMAT; 2].map(|format| texture(size, format))),
+            position: texture(band, SURFACE_FORMAT),
+            normal: texture(band, SURFACE_FORMAT),
+            field: texture(band, SURFACE_FORMAT),
+            samples: texture(size, SAMPLE_FORMAT),
+            colour: texture(tile.pixels()[1], COLOUR_FORMAT),
         }
     }
 }
@@ -185,12 +213,13 @@ fn attachment(
 
 const CLEAR: wgpu::LoadOp<wgpu::Color> = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
 
-/// Draws one triangle over the attachments.
+/// Draws one triangle over the attachments, or the part of them that starts at scissor x, y, width w, height h.
 fn draw_fullscreen(
     device: &Device,
     pipeline: &wgpu::RenderPipeline,
     groups: &[wgpu::BindGroup],
     attachments: &[Option<wgpu::RenderPassColorAttachment<'_>>],
+    scissor: Option<[u32; 4]>,
 ) -> Result<(), GpuError> {
     let mut encoder = device.encoder();
     let mut pass =
@@ -198,6 +227,9 @@ fn draw_fullscreen(
     pass.set_pipeline(pipeline);
     for (index, group) in groups.iter().enumerate() {
         pass.set_bind_group(index as u32, group, &[]);
+    }
+    if let Some([x, y, width, height]) = scissor {
+        pass.set_scissor_rect(x, y, width, height);
     }
     pass.draw(0..3, 0..1);
     drop(pass);

@@ -1,9 +1,9 @@
 //! `shaders/shade.wgsl`: field and pattern into colour.
 
-use super::{CLEAR, Passes, SUM_FORMAT, Scene, Targets, attachment, bind, draw_fullscreen, fullscreen, whole};
+use super::{Band, CLEAR, Passes, SAMPLE_FORMAT, Scene, Targets, attachment, bind, draw_fullscreen, fullscreen, whole};
 use crate::field::{Pattern, Picture};
 use crate::gpu::device::Device;
-use crate::gpu::view::Window;
+use crate::gpu::view::Tile;
 use crate::gpu::{GpuError, View, shader::SHADE};
 use wgpu::BindingResource::{Sampler, TextureView};
 
@@ -78,30 +78,20 @@ fn mip_levels(picture: &Picture) -> Vec<Picture> {
 }
 
 pub fn pipeline<'a>(passes: &'a Passes, device: &Device) -> &'a wgpu::RenderPipeline {
-    let add = wgpu::BlendComponent {
-        src_factor: wgpu::BlendFactor::One,
-        dst_factor: wgpu::BlendFactor::One,
-        operation: wgpu::BlendOperation::Add,
-    };
-    let target = wgpu::ColorTargetState {
-        format: SUM_FORMAT,
-        blend: Some(wgpu::BlendState { color: add, alpha: add }),
-        write_mask: wgpu::ColorWrites::ALL,
-    };
-    passes.shade.get_or_init(|| fullscreen(device, &SHADE, "shade", &[Some(target)]))
+    passes.shade.get_or_init(|| fullscreen(device, &SHADE, "shade", &[Some(SAMPLE_FORMAT.into())]))
 }
 
-/// Adds one sample to the sum; `first` starts it.
+/// Shades the rows of a band.
 pub fn run(
     device: &Device,
     passes: &Passes,
     scene: &Scene<'_>,
     targets: &Targets,
-    window: &Window,
-    first: bool,
+    tile: &Tile,
+    band: &Band,
 ) -> Result<(), GpuError> {
     let pipeline = pipeline(passes, device);
-    let record = scene.view.shade_record(scene.tables, window);
+    let record = scene.view.shade_record(scene.tables, tile);
     let record = device.buffer("the colours", &[record], wgpu::BufferUsages::UNIFORM)?;
     let [position, normal, field] = [&targets.position, &targets.normal, &targets.field].map(whole);
     let group = bind(
@@ -115,8 +105,10 @@ pub fn run(
             (4, Sampler(&scene.picture.sampler)),
             (5, record.as_entire_binding()),
             (6, scene.light.as_entire_binding()),
+            (7, band.record.as_entire_binding()),
         ],
     );
-    let load = if first { CLEAR } else { wgpu::LoadOp::Load };
-    draw_fullscreen(device, pipeline, &[group], &[attachment(&whole(&targets.sum), load)])
+    let scissor = [0, band.rows.start, tile.size[0], band.rows.len() as u32];
+    let load = if band.rows.start == 0 { CLEAR } else { wgpu::LoadOp::Load };
+    draw_fullscreen(device, pipeline, &[group], &[attachment(&whole(&targets.samples), load)], Some(scissor))
 }

@@ -4,8 +4,10 @@ use super::{CLEAR, DEPTH_FORMAT, PATCH_FORMAT, Passes, SURFACE_FORMAT, Scene, Ta
 use super::{attachment, bind, shader, whole};
 use crate::gpu::device::Device;
 use crate::gpu::proxy::{Draw, Proxy};
-use crate::gpu::view::Window;
+use crate::gpu::records::{DrawRecord, ProxyVertex};
+use crate::gpu::view::Tile;
 use crate::gpu::{GpuError, Pipeline, shader::VISIBILITY};
+use wgpu::BindingResource::TextureView;
 use wgpu::BufferUsages;
 
 /// The proxy tessellation on the adapter.
@@ -13,16 +15,20 @@ pub struct ProxyBuffers {
     vertices: wgpu::Buffer,
     indices: wgpu::Buffer,
     order: wgpu::Buffer,
-    draws: Vec<Draw>,
+    draws: Vec<(Draw, wgpu::Buffer)>,
 }
 
 impl ProxyBuffers {
     pub fn new(device: &Device, proxy: &Proxy) -> Result<Self, GpuError> {
+        let record = |draw: &Draw| {
+            let record = DrawRecord { first: draw.first, group_size: draw.group_size, padding: [0; 2] };
+            device.buffer("a draw", &[record], BufferUsages::UNIFORM)
+        };
         Ok(ProxyBuffers {
             vertices: device.buffer("the vertices of the proxy", &proxy.vertices, BufferUsages::VERTEX)?,
             indices: device.buffer("the triangles of the proxy", &proxy.indices, BufferUsages::INDEX)?,
             order: device.buffer("the order of the patches", &proxy.order, BufferUsages::STORAGE)?,
-            draws: proxy.draws.clone(),
+            draws: proxy.draws.iter().map(|draw| Ok((draw.clone(), record(draw)?))).collect::<Result<_, GpuError>>()?,
         })
     }
 }
@@ -47,9 +53,9 @@ fn create(device: &Device, entry: &str, formats: &[wgpu::TextureFormat]) -> wgpu
             entry_point: Some("vertex"),
             compilation_options: Default::default(),
             buffers: &[Some(wgpu::VertexBufferLayout {
-                array_stride: size_of::<[f32; 2]>() as u64,
+                array_stride: size_of::<ProxyVertex>() as u64,
                 step_mode: wgpu::VertexStepMode::Vertex,
-                attributes: &wgpu::vertex_attr_array![0 => Float32x2],
+                attributes: &wgpu::vertex_attr_array![0 => Float32x2, 1 => Uint32],
             })],
         },
         // Both sides are seen: open panels have an inside.
@@ -79,23 +85,30 @@ pub fn run(
     passes: &Passes,
     scene: &Scene<'_>,
     targets: &Targets,
-    window: &Window,
+    tile: &Tile,
 ) -> Result<(), GpuError> {
     let pipeline = pipeline(passes, device, scene.view.pipeline);
-    let frame = scene.view.frame_record(scene.tables, window);
+    let frame = scene.view.frame_record(scene.tables, tile);
     let frame = device.buffer("the frame", &[frame], BufferUsages::UNIFORM)?;
+    let [records, points, scales, patch_views] = scene.table_views();
     let group = bind(
         device,
         pipeline.get_bind_group_layout(0),
         &[
-            (0, scene.tables.records.as_entire_binding()),
-            (1, scene.tables.points.as_entire_binding()),
-            (2, scene.tables.scales.as_entire_binding()),
-            (3, scene.patch_views.as_entire_binding()),
+            (0, TextureView(&records)),
+            (1, TextureView(&points)),
+            (2, TextureView(&scales)),
+            (3, TextureView(&patch_views)),
             (4, frame.as_entire_binding()),
             (5, scene.proxy.order.as_entire_binding()),
         ],
     );
+    let draw_groups: Vec<_> = scene
+        .proxy
+        .draws
+        .iter()
+        .map(|(_, record)| bind(device, pipeline.get_bind_group_layout(1), &[(0, record.as_entire_binding())]))
+        .collect();
     let views: Vec<_> =
         [&targets.patch, &targets.uv].into_iter().chain(targets.proxy.iter().flatten()).map(whole).collect();
     let attachments: Vec<_> = views.iter().map(|view| attachment(view, CLEAR)).collect();
@@ -114,8 +127,9 @@ pub fn run(
     pass.set_bind_group(0, &group, &[]);
     pass.set_vertex_buffer(0, scene.proxy.vertices.slice(..));
     pass.set_index_buffer(scene.proxy.indices.slice(..), wgpu::IndexFormat::Uint32);
-    for draw in &scene.proxy.draws {
-        pass.draw_indexed(draw.indices.clone(), draw.base_vertex, draw.instances.clone());
+    for ((draw, _), group) in scene.proxy.draws.iter().zip(&draw_groups) {
+        pass.set_bind_group(1, group, &[]);
+        pass.draw_indexed(draw.indices.clone(), draw.base_vertex, 0..draw.groups);
     }
     drop(pass);
     device.submit(encoder)
