@@ -98,7 +98,7 @@ fn collect(mesh: &SubdivMesh, surface: &LimitSurface, control: &Level) -> Info {
 
 fn gpu_table_bytes(surface: &LimitSurface) -> u64 {
     let irregular = surface.patches().iter().filter(|patch| patch.kind != PatchKind::Regular).count();
-    gpu::tables::points_size(surface.patches().len() - irregular, irregular)
+    16 * gpu::tables::points_texels(surface.patches().len() - irregular, irregular)
 }
 
 fn edges(control: &Level, info: &mut Info) {
