@@ -91,13 +91,25 @@ osd_status osd_refiner_level(const osd_refiner *refiner, int32_t level, const os
 
 /* points: 3 * vertices of level 0; out: 3 * vertices of levels 0, 1, ... one after the other. */
 osd_status osd_refiner_interpolate(const osd_refiner *refiner, const double *points, double *out);
-/* Limit positions by OpenSubdiv's masks. points and out: 3 * vertices of the last level (uniform refinement). */
-osd_status osd_refiner_limit(const osd_refiner *refiner, const double *points, double *out);
+/*
+ * Limit positions and two tangents by OpenSubdiv's masks. All arrays: 3 * vertices of the last level (uniform
+ * refinement).
+ */
+osd_status osd_refiner_limit(const osd_refiner *refiner, const double *points, double *positions, double *tangents_1,
+                             double *tangents_2);
 
 /* ---- reference evaluators ---------------------------------------------------------------------------------------- */
 
-/* What answered: nothing (a hole), an exact B-spline patch, or an approximating end cap. */
-typedef enum osd_answer { OSD_ANSWER_NONE, OSD_ANSWER_REGULAR, OSD_ANSWER_END_CAP } osd_answer;
+/*
+ * What answered: nothing (a hole), an exact B-spline patch, an approximating end cap; or the reference was not asked,
+ * because 3.5.0 reads out of bounds there (Bfr, faces with an interior vertex of valence 2).
+ */
+typedef enum osd_answer {
+    OSD_ANSWER_NONE,
+    OSD_ANSWER_REGULAR,
+    OSD_ANSWER_END_CAP,
+    OSD_ANSWER_NOT_ASKED
+} osd_answer;
 
 /* Far::PatchTable in double precision, Gregory end caps; isolation in 1..10. */
 typedef struct osd_far osd_far;

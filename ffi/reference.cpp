@@ -28,6 +28,16 @@ struct osd_bfr {
     };
     std::vector<Ptex> ptex;
 
+    // Bfr's IrregularPatchBuilder loses track of the overlapping faces round an interior vertex of valence 2: it reads
+    // beyond its arrays, and sometimes crashes.
+    bool is_safe(int index) const {
+        Far::TopologyLevel const level = refiner->GetLevel(0);
+        auto const vertices = level.GetFaceVertices(index);
+        return std::none_of(vertices.begin(), vertices.end(), [&](int v) {
+            return !level.IsVertexBoundary(v) && level.GetVertexFaces(v).size() == 2;
+        });
+    }
+
     // The surface of the last face asked for: samples come grouped by face.
     int face = -1;
     Bfr::Surface<double> surface;
@@ -130,6 +140,10 @@ osd_status osd_bfr_evaluate(osd_bfr *bfr, int32_t count, const int32_t *faces, c
             std::fill_n(jets, 9, 0.0);
             require(faces[i] >= 0 && faces[i] < int32_t(bfr->ptex.size()), "ptex face out of range");
             osd_bfr::Ptex const ptex = bfr->ptex[faces[i]];
+            if (!bfr->is_safe(ptex.face)) {
+                answers[i] = OSD_ANSWER_NOT_ASKED;
+                continue;
+            }
             if (ptex.face != bfr->face) {
                 bfr->face = ptex.face;
                 if (!bfr->factory->InitVertexSurface(ptex.face, &bfr->surface)) bfr->surface.Clear();

@@ -180,12 +180,15 @@ osd_status osd_refiner_interpolate(const osd_refiner *handle, const double *poin
     return guard([&] { interpolate(*handle->refiner, points, reinterpret_cast<Point *>(out)); });
 }
 
-osd_status osd_refiner_limit(const osd_refiner *handle, const double *points, double *out) {
+osd_status osd_refiner_limit(const osd_refiner *handle, const double *points, double *positions, double *tangents_1,
+                             double *tangents_2) {
     return guard([&] {
+        require(handle->refiner->IsUniform(), "limit masks need uniform refinement");
         Far::PrimvarRefinerReal<double> const primvar(*handle->refiner);
         Point const *source = reinterpret_cast<Point const *>(points);
-        Point *limit = reinterpret_cast<Point *>(out);
-        primvar.Limit(source, limit);
+        Point *limit = reinterpret_cast<Point *>(positions);
+        Point *first = reinterpret_cast<Point *>(tangents_1), *second = reinterpret_cast<Point *>(tangents_2);
+        primvar.Limit(source, limit, first, second);
     });
 }
 

@@ -1,10 +1,33 @@
 //! catoptric shows what the limit surface of a subdivision mesh really reflects.
 //!
-//! A tour in data-flow order.
+//! A tour in data-flow order:
+//!
+//! * [`mesh`]: a Catmull-Clark control mesh comes in and is validated ([`mesh::read`], [`mesh::sample`]);
+//! * [`osd`]: OpenSubdiv refines its topology, and answers as the reference of the regression;
+//! * [`patch`]: the refined faces whose limit has a closed form become patches;
+//! * [`stam`]: class tables give the exact limit anywhere, in f64 ([`stam::LimitSurface`]);
+//! * [`field`]: cameras, lights and what a surface mirrors;
+//! * [`gpu`]: the same limit for every pixel, in a fragment pipeline;
+//! * [`verify`]: all of it compared with OpenSubdiv;
+//! * [`output`]: files, written whole or not at all;
+//! * [`cli`]: the command line.
+//!
+//! ```
+//! use catoptric::{mesh, stam::LimitSurface};
+//!
+//! let surface = LimitSurface::new(&mesh::sample())?;
+//! let (patch, jet) = surface.evaluate_ptex(0, [0.25, 0.75]).expect("ptex face 0 is not a hole");
+//! assert!((jet.normal.length() - 1.0).abs() < 1e-12);
+//! println!("{} at {} on a {} patch", jet.normal, jet.position, surface.kind(patch).name());
+//! # Ok::<(), catoptric::patch::PatchError>(())
+//! ```
 
+pub mod cli;
 pub mod field;
 pub mod gpu;
 pub mod mesh;
 pub mod osd;
+pub mod output;
 pub mod patch;
 pub mod stam;
+pub mod verify;

@@ -71,6 +71,13 @@ pub enum GpuError {
     },
 }
 
+impl GpuError {
+    /// Whether there is no adapter at all, rather than one that failed.
+    pub fn is_no_adapter(&self) -> bool {
+        matches!(self, GpuError::NoAdapter)
+    }
+}
+
 /// A point of a patch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {

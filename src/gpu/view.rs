@@ -113,7 +113,7 @@ impl View {
         }
         let light = self.light();
         let axes_ok = light.center.is_finite() && (light.normal().length() - 1.0).abs() < 1e-6;
-        if !axes_ok || !(light.spacing > 0.0 && light.spacing.is_finite()) {
+        if !(axes_ok && light.spacing > 0.0 && light.spacing.is_finite()) {
             return fail("the light needs a finite centre, perpendicular unit axes and a spacing above 0".into());
         }
         match &self.pattern {

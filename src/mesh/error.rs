@@ -118,10 +118,15 @@ pub enum MeshError {
     #[error("{at}: a face with vertex 0; OBJ counts vertices from 1")]
     VertexZero { at: Place },
     #[error(
-        "{at}: a face with vertex {index}, but only {defined} vertices stand before it; \
+        "{at}: a face with vertex {index} (vertices so far: {defined}); \
          -1 is the latest, use -{defined} to -1"
     )]
     VertexBeforeStart { at: Place, index: i64, defined: usize },
+    #[error(
+        "{at}: a face with vertex {index} (vertices so far: 0); \
+         move the face behind its vertices"
+    )]
+    NegativeBeforeVertices { at: Place, index: i64 },
 
     #[error("{at}: the mesh has no vertices; give a mesh with polygons")]
     NoVertices { at: Place },
@@ -146,7 +151,7 @@ pub enum MeshError {
     )]
     CoordinateTooLarge { at: Place, value: f64 },
 
-    #[error("{at}: a face with {size} vertices; a face needs at least 3")]
+    #[error("{at}: a face of size {size}; a face needs at least 3 vertices")]
     FaceTooSmall { at: Place, size: usize },
     #[error("{at}: a face with {size} vertices, but OpenSubdiv takes at most {MAX_VALENCE}; split it")]
     FaceTooLarge { at: Place, size: usize },
@@ -161,20 +166,26 @@ pub enum MeshError {
          split the vertex"
     )]
     ValenceTooHigh { at: Place, valence: usize },
+    #[error(
+        "{at}: an edge of this vertex has {faces} faces, but OpenSubdiv takes at most {limit}; \
+         split the edge",
+        limit = MAX_VALENCE - 2
+    )]
+    TooManyFacesAtEdge { at: Place, faces: usize },
 
     #[error("{at}: sharpness {value} is not finite; use 0 (smooth) to 10 (infinitely sharp)")]
     SharpnessNotFinite { at: Place, value: f32 },
     #[error("{at}: sharpness {value} is negative; use 0 (smooth) to 10 (infinitely sharp)")]
     SharpnessNegative { at: Place, value: f32 },
-    #[error("{at}: a crease with vertex {vertex}, but the mesh has only 0 to {last}; tags count from 0")]
+    #[error("{at}: a crease with vertex {vertex}, but the mesh has only 0 to {last}; count from 0")]
     CreaseOutOfRange { at: Place, vertex: u32, last: u64 },
     #[error("{at}: a crease from vertex {vertex} to itself; name the two ends of an edge")]
     CreaseOnOneVertex { at: Place, vertex: u32 },
-    #[error("{at}: a crease from vertex {} to {}, but no face has that edge; tags count from 0", .vertices[0], .vertices[1])]
+    #[error("{at}: a crease from vertex {} to {}, but no face has that edge; count from 0", .vertices[0], .vertices[1])]
     CreaseWithoutEdge { at: Place, vertices: [u32; 2] },
-    #[error("{at}: a corner at vertex {vertex}, but the mesh has only 0 to {last}; tags count from 0")]
+    #[error("{at}: a corner at vertex {vertex}, but the mesh has only 0 to {last}; count from 0")]
     CornerOutOfRange { at: Place, vertex: u32, last: u64 },
-    #[error("{at}: a hole at face {face}, but the mesh has only 0 to {last}; tags count from 0")]
+    #[error("{at}: a hole at face {face}, but the mesh has only 0 to {last}; count from 0")]
     HoleOutOfRange { at: Place, face: u32, last: u64 },
 
     #[error(
@@ -186,7 +197,7 @@ pub enum MeshError {
     UnknownTag { at: Place, name: String },
     #[error("{at}: the {name} tag announces {announced} values and has {found}; correct its counts")]
     TagCountMismatch { at: Place, name: String, announced: usize, found: usize },
-    #[error("{at}: the {name} tag has {ints} ints, {floats} floats and {strings} strings; it takes {expected}")]
+    #[error("{at}: the {name} tag has {ints}/{floats}/{strings} ints/floats/strings; it takes {expected}")]
     TagShape { at: Place, name: &'static str, ints: usize, floats: usize, strings: usize, expected: &'static str },
     #[error("{at}: the {name} tag has index {index}; use 0 to {limit}", limit = i32::MAX)]
     TagIndex { at: Place, name: &'static str, index: i64 },

@@ -11,6 +11,7 @@ mod error;
 mod lines;
 mod measure;
 mod obj;
+mod sample;
 mod tags;
 mod validate;
 
@@ -19,6 +20,7 @@ use std::path::Path;
 use glam::DVec3;
 
 pub use error::{MeshError, Place, Spot};
+pub use sample::sample;
 pub use validate::{MAX_COORDINATE, MAX_VALENCE};
 
 /// Reads and validates a mesh file. The extension says the format; so far that is `.obj`.

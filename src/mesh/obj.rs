@@ -124,11 +124,16 @@ impl Reader<'_> {
             let at = self.place(number);
             return Err(MeshError::VertexZero { at });
         }
+        let index = i64::from(index);
         let defined = self.mesh.points.len();
+        if defined == 0 {
+            let at = self.place(number);
+            return Err(MeshError::NegativeBeforeVertices { at, index });
+        }
         defined
             .checked_sub(index.unsigned_abs() as usize)
             .and_then(|vertex| u32::try_from(vertex).ok())
-            .ok_or_else(|| MeshError::VertexBeforeStart { at: self.place(number), index: index.into(), defined })
+            .ok_or_else(|| MeshError::VertexBeforeStart { at: self.place(number), index, defined })
     }
 
     fn not_a_number(&self, number: u32, token: &[u8], expected: &'static str) -> MeshError {

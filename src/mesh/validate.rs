@@ -169,18 +169,16 @@ fn check_faces(mesh: &SubdivMesh, source: &Source<'_>) -> Result<(), MeshError> 
     for (vertex, &faces) in faces_at.iter().enumerate() {
         // A face brings two edges to each of its vertices, which neighbours usually share.
         if 2 * faces as usize > MAX_VALENCE {
-            let valence = edges_at(mesh, vertex as u32);
-            if valence > MAX_VALENCE {
-                let at = source.place(Part::Vertex(vertex));
-                return Err(MeshError::ValenceTooHigh { at, valence });
-            }
+            check_valence(mesh, vertex as u32, source)?;
         }
     }
     Ok(())
 }
 
-/// Number of different edges at a vertex.
-fn edges_at(mesh: &SubdivMesh, vertex: u32) -> usize {
+/// Counts the edges at a vertex and the faces at each of them.
+///
+/// The vertex that subdivision puts on an edge has an edge to either end and one into each face.
+fn check_valence(mesh: &SubdivMesh, vertex: u32, source: &Source<'_>) -> Result<(), MeshError> {
     let mut neighbours = Vec::new();
     for (_, face) in mesh.faces() {
         if let Some(k) = face.iter().position(|&v| v == vertex) {
@@ -189,8 +187,17 @@ fn edges_at(mesh: &SubdivMesh, vertex: u32) -> usize {
         }
     }
     neighbours.sort_unstable();
-    neighbours.dedup();
-    neighbours.len()
+    let edges = || neighbours.chunk_by(|a, b| a == b);
+    let at = || source.place(Part::Vertex(vertex as usize));
+    let valence = edges().count();
+    if valence > MAX_VALENCE {
+        return Err(MeshError::ValenceTooHigh { at: at(), valence });
+    }
+    let faces = edges().map(<[u32]>::len).max().unwrap_or(0);
+    if faces + 2 > MAX_VALENCE {
+        return Err(MeshError::TooManyFacesAtEdge { at: at(), faces });
+    }
+    Ok(())
 }
 
 /// A face as its smallest vertex and the one after it, where to find the rest, and its index.

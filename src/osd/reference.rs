@@ -14,12 +14,15 @@ pub enum Answer {
     Regular,
     /// An end cap (Far) or an irregular face (Bfr), approximate away from its corners.
     EndCap,
+    /// The reference was not asked: OpenSubdiv 3.5.0 reads out of bounds there. That is Bfr on faces with an interior
+    /// vertex of valence 2.
+    NotAsked,
 }
 
 /// A reference's answer, derivatives by the (u,v) of the ptex face.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ReferenceJet {
-    /// What answered; the other fields are zero for [`Answer::None`].
+    /// What answered; the other fields are zero for [`Answer::None`] and [`Answer::NotAsked`].
     pub answer: Answer,
     /// Position.
     pub position: DVec3,
@@ -76,6 +79,7 @@ impl Batch {
                 answer: match raw::osd_answer::from(answer) {
                     raw::OSD_ANSWER_REGULAR => Answer::Regular,
                     raw::OSD_ANSWER_END_CAP => Answer::EndCap,
+                    raw::OSD_ANSWER_NOT_ASKED => Answer::NotAsked,
                     _ => Answer::None,
                 },
                 position,
@@ -90,6 +94,16 @@ impl Batch {
 ///
 /// Exact on regular patches, and at dyadic points i/2^k, k <= isolation; end caps approximate elsewhere. The options
 /// are those of design.md 3.4: infinitely sharp patches on, legacy sharp corners and single-crease patches off.
+///
+/// Evaluation borrows the table mutably: one evaluation at a time.
+/// ```compile_fail
+/// fn shared<T: Sync>() {}
+/// shared::<catoptric::osd::Far>();
+/// ```
+/// ```compile_fail
+/// use catoptric::osd::{Far, Reference};
+/// fn twice(far: &Far) { far.evaluate(&[]).unwrap(); }
+/// ```
 #[derive(Debug)]
 pub struct Far(NonNull<raw::osd_far>);
 
@@ -131,6 +145,16 @@ impl Reference for Far {
 }
 
 /// Owner of a `Bfr::RefinerSurfaceFactory` in double precision.
+///
+/// The factory's cache is not thread-safe: one thread, one evaluation at a time.
+/// ```compile_fail
+/// fn shared<T: Sync>() {}
+/// shared::<catoptric::osd::Bfr>();
+/// ```
+/// ```compile_fail
+/// fn sent<T: Send>() {}
+/// sent::<catoptric::osd::Bfr>();
+/// ```
 #[derive(Debug)]
 pub struct Bfr(NonNull<raw::osd_bfr>);
 

@@ -72,6 +72,17 @@ impl Level {
 }
 
 /// Owner of a `Far::TopologyRefiner`.
+///
+/// It may move to another thread, but not be shared: OpenSubdiv makes no promise about concurrent reads.
+/// ```compile_fail
+/// fn shared<T: Sync>() {}
+/// shared::<catoptric::osd::Refiner>();
+/// ```
+/// It is released once, so it cannot be copied.
+/// ```compile_fail
+/// fn copied<T: Clone>() {}
+/// copied::<catoptric::osd::Refiner>();
+/// ```
 #[derive(Debug)]
 pub struct Refiner {
     handle: NonNull<raw::osd_refiner>,
@@ -211,23 +222,24 @@ impl Refiner {
         Ok(out)
     }
 
-    /// Limit positions of the last level by `PrimvarRefiner::Limit`, after [`uniform`](Self::uniform).
+    /// Limit position and two tangents of each vertex of the last level by `PrimvarRefiner::Limit`, after
+    /// [`uniform`](Self::uniform).
     ///
-    /// Exact for smooth, crease and boundary vertices without finite sharpness; wrong for infinitely sharp darts and
-    /// interior vertices of valence 2 (3.5.0).
+    /// Positions are exact for smooth, crease and boundary vertices without finite sharpness, wrong for infinitely sharp
+    /// darts and interior vertices of valence 2 (3.5.0). Tangents are exact for smooth vertices only.
     ///
     /// # Errors
-    /// OpenSubdiv reports an error, as it does after adaptive refinement.
+    /// The refinement is adaptive, or OpenSubdiv reports an error.
     ///
     /// # Panics
     /// `points` is not one point for each vertex of the last level.
-    pub fn limit(&self, points: &[DVec3]) -> Result<Vec<DVec3>, Error> {
+    pub fn limit(&self, points: &[DVec3]) -> Result<[Vec<DVec3>; 3], Error> {
         assert_eq!(Some(&points.len()), self.vertex_counts.last(), "one point a vertex of the last level");
-        let mut out = vec![DVec3::ZERO; points.len()];
+        let mut out = [(); 3].map(|()| vec![DVec3::ZERO; points.len()]);
         let source: &[f64] = bytemuck::cast_slice(points);
-        let target: &mut [f64] = bytemuck::cast_slice_mut(&mut out);
-        // SAFETY: both arrays hold the last level, as the header asks.
-        check(unsafe { raw::osd_refiner_limit(self.handle.as_ptr(), source.as_ptr(), target.as_mut_ptr()) })?;
+        let [positions, first, second] = out.each_mut().map(|x| bytemuck::cast_slice_mut::<DVec3, f64>(x).as_mut_ptr());
+        // SAFETY: all four arrays hold the last level, as the header asks.
+        check(unsafe { raw::osd_refiner_limit(self.handle.as_ptr(), source.as_ptr(), positions, first, second) })?;
         Ok(out)
     }
 }

@@ -15,6 +15,9 @@ pub(crate) use tree::slot;
 use crate::mesh::SubdivMesh;
 use crate::osd::{INFINITE_SHARPNESS, MAX_ISOLATION, Refiner};
 
+/// Most faces round an extraordinary vertex.
+pub const MAX_VALENCE: usize = 4096;
+
 /// Why the patches of a mesh were not found.
 #[derive(Debug, thiserror::Error)]
 pub enum PatchError {
@@ -29,6 +32,9 @@ pub enum PatchError {
         /// Face index in the level.
         face: usize,
     },
+    /// A class table grows with the valence (20 kB a face).
+    #[error("a vertex where {0} faces meet; at most {MAX_VALENCE} are supported: split the vertex")]
+    Valence(usize),
     /// OpenSubdiv numbered child faces in an order we do not know.
     #[error("face {face} of level {level}: unexpected order of its child faces: please report this mesh")]
     ChildOrder {

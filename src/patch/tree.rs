@@ -1,7 +1,7 @@
 //! Finds the patches: walks the refined levels and stops at the first face whose limit is known in closed form.
 
 use super::fan::Fan;
-use super::{Node, Patch, PatchError, PatchKind, Patches, RingClass, Support, Tip};
+use super::{MAX_VALENCE, Node, Patch, PatchError, PatchKind, Patches, RingClass, Support, Tip};
 use crate::osd::{INFINITE_SHARPNESS, Level, Refiner, Rule};
 use std::collections::HashMap;
 
@@ -126,7 +126,11 @@ impl Walk {
         if self.levels[level].face_holes[face] != 0 {
             return Ok(Node::Hole);
         }
-        if let Some(patch) = self.leaf(level, face, cell) {
+        let leaf = self.leaf(level, face, cell);
+        if let Some(fan) = self.fans.iter().find(|fan| fan.faces() > MAX_VALENCE) {
+            return Err(PatchError::Valence(fan.faces()));
+        }
+        if let Some(patch) = leaf {
             self.states[level][face] = State::Leaf;
             self.places.push((level, face));
             self.out.patches.push(patch);

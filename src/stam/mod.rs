@@ -5,11 +5,10 @@
 
 mod bspline;
 mod class;
-mod matrix;
+mod rows;
 mod surface;
 
 pub use class::{ClassTable, LEVELS, WINDOW_POINTS};
-pub use matrix::Matrix;
 pub use surface::{LimitSurface, Net};
 
 use glam::DVec3;

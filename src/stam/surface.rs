@@ -146,9 +146,8 @@ impl LimitSurface {
         };
         let table = &self.tables[class];
         let (points, limit) = self.irregular_net(patch, table);
-        let levels = table.levels[..levels]
-            .iter()
-            .map(|matrix| std::array::from_fn(|row| combine(matrix.row(row), &points)))
+        let levels = (1..=levels)
+            .map(|level| std::array::from_fn(|point| combine(table.weights(level, point), &points)))
             .collect();
         Net::Irregular { limit, lambda: table.lambda, levels }
     }
@@ -166,12 +165,17 @@ impl LimitSurface {
         let table = &self.tables[class];
         let (points, limit) = self.irregular_net(patch, table);
         let window = Window::at(uv);
-        let matrix = &table.levels[(window.level as usize).min(table.levels.len()) - 1];
-        let [offset, du, dv] = sum(&weights(window.t), |k| combine(matrix.row(window.point(k)), &points));
+        let level = (window.level as usize).min(table.level_count());
+        let point = |k| combine(table.weights(level, window.point(k)), &points);
+        let [offset, du, dv] = sum(&weights(window.t), point);
         let scale = table.lambda.powi(window.level as i32 - 1);
         let stretch = 2f64.powi(window.level as i32) * scale;
-        let position = if uv == [0.0, 0.0] { limit } else { limit + scale * offset };
-        Jet { position, du: stretch * du, dv: stretch * dv, normal: normal(du, dv) }
+        let (position, normal) = match (uv, &table.tangents) {
+            ([0.0, 0.0], Some([first, second])) => (limit, normal(combine(first, &points), combine(second, &points))),
+            ([0.0, 0.0], None) => (limit, normal(du, dv)),
+            _ => (limit + scale * offset, normal(du, dv)),
+        };
+        Jet { position, du: stretch * du, dv: stretch * dv, normal }
     }
 
     /// Evaluates a ptex face at (u,v), each in [0,1]: the patch and the jet, derivatives by the ptex parameters; `None`
@@ -181,16 +185,21 @@ impl LimitSurface {
     /// `ptex` is not below [`ptex_count`](Self::ptex_count).
     pub fn evaluate_ptex(&self, ptex: u32, uv: [f64; 2]) -> Option<(usize, Jet)> {
         let (patch, local) = self.locate(ptex, uv)?;
-        let Patch { rotation, depth, .. } = self.patches()[patch];
-        let jet = self.evaluate(patch, local);
-        let (du, dv) = match rotation {
+        Some((patch, self.patches()[patch].jet_to_ptex(self.evaluate(patch, local))))
+    }
+}
+
+impl Patch {
+    /// Turns a jet by patch-local parameters into one by the parameters of the ptex face.
+    pub fn jet_to_ptex(&self, jet: Jet) -> Jet {
+        let (du, dv) = match self.rotation {
             0 => (jet.du, jet.dv),
             1 => (-jet.dv, jet.du),
             2 => (-jet.du, -jet.dv),
             _ => (jet.dv, -jet.du),
         };
-        let scale = f64::from(1u32 << depth);
-        Some((patch, Jet { du: scale * du, dv: scale * dv, ..jet }))
+        let scale = f64::from(1u32 << self.depth);
+        Jet { du: scale * du, dv: scale * dv, ..jet }
     }
 }
 

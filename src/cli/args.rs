@@ -1,0 +1,96 @@
+//! Flags, typed.
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+
+#[derive(Debug, Parser)]
+#[command(
+    name = "catoptric",
+    version,
+    about = "What the limit surface of a subdivision mesh really reflects",
+    after_help = "Without MESH, the built-in sample is used. Exit codes: 0 done or passed, 1 a check failed, \
+                  2 bad usage or input, 3 no usable GPU adapter."
+)]
+pub(super) struct Cli {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(super) enum Command {
+    /// Draw the reflection lines of the limit surface
+    Render(Box<super::render::RenderArgs>),
+    /// Evaluate the limit surface at given samples
+    Eval(EvalArgs),
+    /// Compare the limit surface, on CPU and GPU, with OpenSubdiv
+    Verify(VerifyArgs),
+    /// Say what a mesh is made of and what it will take
+    Info(InfoArgs),
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(super) enum Backend {
+    /// The exact limit in f64
+    Cpu,
+    /// The shader's f32 twin
+    Gpu,
+    /// OpenSubdiv's Far patches at isolation 10, with its end caps
+    Osd,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct EvalArgs {
+    /// Control mesh (.obj)
+    pub mesh: Option<PathBuf>,
+    /// CSV file with the header face,u,v: ptex face, u and v in 0 to 1
+    #[arg(long, value_name = "FILE")]
+    pub samples: PathBuf,
+    /// CSV file to write; standard output otherwise
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Which evaluator answers
+    #[arg(long, value_enum, default_value = "cpu")]
+    pub backend: Backend,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct VerifyArgs {
+    /// Control meshes (.obj)
+    #[arg(value_name = "MESH")]
+    pub meshes: Vec<PathBuf>,
+    /// Write the report as JSON
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+    /// Size of the view that the fragment tier checks pixel by pixel
+    #[arg(long, value_name = "WxH", default_value = "512x512", value_parser = size)]
+    pub size: [u32; 2],
+}
+
+#[derive(Debug, Args)]
+pub(super) struct InfoArgs {
+    /// Control mesh (.obj)
+    pub mesh: Option<PathBuf>,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Largest width and height of a picture, the texture limit of the software adapter.
+const LARGEST_SIZE: u32 = 8192;
+
+/// Parses `WxH`.
+pub(super) fn size(text: &str) -> Result<[u32; 2], String> {
+    let parse = |side: &str| side.parse().ok().filter(|n| (1..=LARGEST_SIZE).contains(n));
+    let sides = text.split_once('x').and_then(|(w, h)| Some([parse(w)?, parse(h)?]));
+    sides.ok_or_else(|| format!("give WIDTHxHEIGHT, each 1 to {LARGEST_SIZE}"))
+}
+
+/// Parses `X,Y,Z`.
+pub(super) fn vector(text: &str) -> Result<glam::DVec3, String> {
+    let numbers: Vec<f64> =
+        text.split(',').map_while(|x| x.trim().parse().ok()).filter(|x: &f64| x.is_finite()).collect();
+    match numbers[..] {
+        [x, y, z] if text.matches(',').count() == 2 => Ok(glam::DVec3::new(x, y, z)),
+        _ => Err("give three finite numbers X,Y,Z".to_owned()),
+    }
+}

@@ -1,0 +1,193 @@
+//! `info`: what a mesh is made of, and what it will take.
+
+use super::args::InfoArgs;
+use super::{Failure, load, write_out};
+use crate::gpu;
+use crate::mesh::{Boundary, Creasing, SubdivMesh};
+use crate::osd::{INFINITE_SHARPNESS, Level, Refiner, Rule};
+use crate::patch::PatchKind;
+use crate::stam::LimitSurface;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+#[derive(Debug, Default, Serialize)]
+struct Info {
+    mesh: String,
+    vertices: usize,
+    faces: usize,
+    ptex_faces: usize,
+    /// Faces by number of corners.
+    face_sizes: BTreeMap<u32, usize>,
+    /// Interior vertices by number of faces.
+    interior_valences: BTreeMap<usize, usize>,
+    /// Boundary vertices by number of faces.
+    boundary_valences: BTreeMap<usize, usize>,
+    /// Vertices by rule of the control mesh.
+    rules: BTreeMap<&'static str, usize>,
+    isolated_vertices: usize,
+    edges: usize,
+    boundary_edges: usize,
+    non_manifold_edges: usize,
+    semi_sharp_edges: usize,
+    infinitely_sharp_edges: usize,
+    semi_sharp_vertices: usize,
+    largest_finite_sharpness: f32,
+    holes: usize,
+    boundary: &'static str,
+    creasing: &'static str,
+    /// Patches by kind.
+    patches: BTreeMap<&'static str, usize>,
+    /// Patches by depth in the quadtree of their ptex face.
+    patch_depths: BTreeMap<u8, usize>,
+    /// Classes of irregular patches.
+    classes: usize,
+    /// Bytes of the class matrices in f64 and of the tables on the GPU.
+    class_table_bytes: usize,
+    gpu_table_bytes: u64,
+}
+
+pub(super) fn run(args: &InfoArgs) -> Result<(), Failure> {
+    let mesh = load(args.mesh.as_deref())?;
+    let surface = LimitSurface::new(&mesh).map_err(|e| Failure::of(&mesh, e))?;
+    let control = Refiner::uniform(&mesh, 1).and_then(|r| r.level(0)).map_err(|e| Failure::of(&mesh, e))?;
+    let info = collect(&mesh, &surface, &control);
+    let text = if args.json {
+        serde_json::to_string_pretty(&info).map_err(std::io::Error::from)? + "\n"
+    } else {
+        describe(&info)
+    };
+    write_out(None, text.as_bytes())
+}
+
+fn collect(mesh: &SubdivMesh, surface: &LimitSurface, control: &Level) -> Info {
+    let mut info = Info {
+        mesh: mesh.name.clone(),
+        vertices: mesh.points.len(),
+        faces: mesh.face_count(),
+        ptex_faces: surface.ptex_count(),
+        edges: control.edge_sharpness.len(),
+        holes: control.face_holes.iter().filter(|&&hole| hole != 0).count(),
+        classes: surface.classes().len(),
+        class_table_bytes: surface.tables().iter().map(|table| table.bytes()).sum(),
+        gpu_table_bytes: gpu_table_bytes(surface),
+        boundary: match mesh.boundary {
+            Boundary::None => "none",
+            Boundary::EdgeOnly => "edge only",
+            Boundary::EdgeAndCorner => "edge and corner",
+        },
+        creasing: match mesh.creasing {
+            Creasing::Uniform => "uniform",
+            Creasing::Chaikin => "chaikin",
+        },
+        ..Info::default()
+    };
+    for &size in &mesh.face_sizes {
+        *info.face_sizes.entry(size).or_default() += 1;
+    }
+    for patch in surface.patches() {
+        *info.patch_depths.entry(patch.depth).or_default() += 1;
+    }
+    for kind in PatchKind::ALL {
+        info.patches.insert(kind.name(), surface.patches().iter().filter(|patch| patch.kind == kind).count());
+    }
+    edges(control, &mut info);
+    vertices(control, &mut info);
+    info
+}
+
+fn gpu_table_bytes(surface: &LimitSurface) -> u64 {
+    let irregular = surface.patches().iter().filter(|patch| patch.kind != PatchKind::Regular).count();
+    16 * gpu::tables::points_texels(surface.patches().len() - irregular, irregular)
+}
+
+fn edges(control: &Level, info: &mut Info) {
+    for (faces, &sharpness) in control.edge_faces.iter().zip(&control.edge_sharpness) {
+        match faces {
+            [_, -2] => info.non_manifold_edges += 1,
+            [_, -1] => info.boundary_edges += 1,
+            // Boundaries are infinitely sharp by rule; what is counted here was asked for.
+            _ if sharpness >= INFINITE_SHARPNESS => info.infinitely_sharp_edges += 1,
+            _ if sharpness > 0.0 => info.semi_sharp_edges += 1,
+            _ => {}
+        }
+        if sharpness < INFINITE_SHARPNESS {
+            info.largest_finite_sharpness = info.largest_finite_sharpness.max(sharpness);
+        }
+    }
+}
+
+fn vertices(control: &Level, info: &mut Info) {
+    let mut faces = vec![0; control.vertex_count()];
+    let mut boundary = vec![false; control.vertex_count()];
+    for face in 0..control.face_count() {
+        let corners = control.corners(face);
+        for i in corners.clone() {
+            let next = if i + 1 == corners.end { corners.start } else { i + 1 };
+            let [vertex, next] = [i, next].map(|i| control.face_vertices[i] as usize);
+            faces[vertex] += 1;
+            if control.edge_faces[control.face_edges[i] as usize][1] < 0 {
+                boundary[vertex] = true;
+                boundary[next] = true;
+            }
+        }
+    }
+    for (vertex, &count) in faces.iter().enumerate() {
+        let histogram = match (count, boundary[vertex]) {
+            (0, _) => {
+                info.isolated_vertices += 1;
+                continue;
+            }
+            (_, true) => &mut info.boundary_valences,
+            (_, false) => &mut info.interior_valences,
+        };
+        *histogram.entry(count).or_default() += 1;
+        let rule = match control.vertex_rules[vertex] {
+            Rule::Smooth => "smooth",
+            Rule::Dart => "dart",
+            Rule::Crease => "crease",
+            Rule::Corner => "corner",
+        };
+        *info.rules.entry(rule).or_default() += 1;
+        let sharpness = control.vertex_sharpness[vertex];
+        if sharpness > 0.0 && sharpness < INFINITE_SHARPNESS {
+            info.semi_sharp_vertices += 1;
+            info.largest_finite_sharpness = info.largest_finite_sharpness.max(sharpness);
+        }
+    }
+}
+
+fn describe(info: &Info) -> String {
+    fn list<K: std::fmt::Display>(map: &BTreeMap<K, usize>) -> String {
+        let items: Vec<_> = map.iter().filter(|(_, n)| **n > 0).map(|(key, n)| format!("{key}: {n}")).collect();
+        if items.is_empty() { "none".to_owned() } else { items.join(", ") }
+    }
+    let mebibytes = |bytes: f64| format!("{:.2} MiB", bytes / f64::from(1 << 20));
+    let edges = format!(
+        "{} (boundary: {}, not manifold: {}, semi-sharp: {}, infinitely sharp: {})",
+        info.edges, info.boundary_edges, info.non_manifold_edges, info.semi_sharp_edges, info.infinitely_sharp_edges
+    );
+    let rows = [
+        ("mesh", info.mesh.clone()),
+        ("control vertices", format!("{} (isolated: {})", info.vertices, info.isolated_vertices)),
+        ("control faces", format!("{} (holes: {}; ptex faces: {})", info.faces, info.holes, info.ptex_faces)),
+        ("faces by corners", list(&info.face_sizes)),
+        ("interior valences", list(&info.interior_valences)),
+        ("boundary valences", list(&info.boundary_valences)),
+        ("vertex rules", list(&info.rules)),
+        ("edges", edges),
+        ("semi-sharp vertices", info.semi_sharp_vertices.to_string()),
+        ("largest finite sharpness", info.largest_finite_sharpness.to_string()),
+        ("boundary rule", info.boundary.to_owned()),
+        ("creasing rule", info.creasing.to_owned()),
+        ("patches", format!("{} (all exact)", list(&info.patches))),
+        ("patches by depth", list(&info.patch_depths)),
+        ("classes", format!("{} ({} of matrices)", info.classes, mebibytes(info.class_table_bytes as f64))),
+        ("GPU tables", mebibytes(info.gpu_table_bytes as f64)),
+    ];
+    let mut text = String::new();
+    for (name, value) in rows {
+        let _ = writeln!(text, "{name:<25} {value}"); // writing to a String cannot fail
+    }
+    text
+}

@@ -1,0 +1,123 @@
+//! The command line: a thin layer of typed flags over the library.
+
+mod args;
+mod eval;
+mod info;
+mod render;
+mod verify;
+
+use args::{Cli, Command};
+use clap::Parser;
+use std::fmt::Display;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use crate::gpu::GpuError;
+use crate::mesh::{self, MeshError, SubdivMesh};
+use crate::output::OutputError;
+
+/// Why a command stopped, and with which exit code.
+#[derive(Debug)]
+enum Failure {
+    /// A check failed; the report says which.
+    Check,
+    /// Bad usage or input: what, where, what to do.
+    Bad(String),
+    /// No usable GPU adapter.
+    NoAdapter(String),
+    /// Standard output is gone.
+    Stdout(std::io::Error),
+}
+
+impl Failure {
+    /// A failure with the mesh in front.
+    fn of(mesh: &SubdivMesh, error: impl Display) -> Self {
+        Self::Bad(format!("{}: {error}", mesh.name))
+    }
+}
+
+impl From<GpuError> for Failure {
+    fn from(error: GpuError) -> Self {
+        if error.is_no_adapter() { Self::NoAdapter(error.to_string()) } else { Self::Bad(error.to_string()) }
+    }
+}
+
+impl From<MeshError> for Failure {
+    fn from(error: MeshError) -> Self {
+        Self::Bad(error.to_string())
+    }
+}
+
+impl From<OutputError> for Failure {
+    fn from(error: OutputError) -> Self {
+        Self::Bad(error.to_string())
+    }
+}
+
+impl From<std::io::Error> for Failure {
+    fn from(error: std::io::Error) -> Self {
+        Self::Stdout(error)
+    }
+}
+
+/// Parses the arguments of the process, runs the command and returns its exit code: 0 done or passed, 1 a check failed,
+/// 2 bad usage or input, 3 no usable GPU adapter.
+pub fn run() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) if !error.use_stderr() => {
+            return if error.print().is_ok() { ExitCode::SUCCESS } else { ExitCode::from(2) };
+        }
+        Err(error) => {
+            let text = error.to_string();
+            let first = text.lines().next().unwrap_or("bad usage").trim_start_matches("error: ");
+            eprintln!("catoptric: {first}; see catoptric --help");
+            return ExitCode::from(2);
+        }
+    };
+    let result = match cli.command {
+        Command::Render(args) => render::run(&args),
+        Command::Eval(args) => eval::run(&args),
+        Command::Verify(args) => verify::run(&args),
+        Command::Info(args) => info::run(&args),
+    };
+    let (code, message) = match result {
+        Ok(()) => return ExitCode::SUCCESS,
+        Err(Failure::Check) => return ExitCode::from(1),
+        // Whoever read our output has seen enough.
+        Err(Failure::Stdout(error)) if error.kind() == std::io::ErrorKind::BrokenPipe => return ExitCode::SUCCESS,
+        Err(Failure::Stdout(error)) => (2, format!("cannot write to standard output: {error}")),
+        Err(Failure::Bad(message)) => (2, message),
+        Err(Failure::NoAdapter(message)) => (3, message),
+    };
+    eprintln!("catoptric: {message}");
+    ExitCode::from(code)
+}
+
+/// Reads a mesh, or makes the built-in sample.
+fn load(path: Option<&Path>) -> Result<SubdivMesh, MeshError> {
+    match path {
+        Some(path) => mesh::read(path),
+        None => Ok(mesh::sample()),
+    }
+}
+
+/// Writes to a file, whole, or to standard output.
+fn write_out(path: Option<&PathBuf>, text: &[u8]) -> Result<(), Failure> {
+    match path {
+        Some(path) => Ok(crate::output::write_whole(path, |out| out.write_all(text))?),
+        None => {
+            let mut out = std::io::stdout().lock();
+            out.write_all(text)?;
+            Ok(out.flush()?)
+        }
+    }
+}
+
+/// A spinner on standard error that shows what takes longer than a second, on a terminal only.
+fn progress(message: String) -> indicatif::ProgressBar {
+    let bar = indicatif::ProgressBar::new_spinner().with_message(message);
+    bar.enable_steady_tick(std::time::Duration::from_secs(1));
+    bar
+}

@@ -1,0 +1,59 @@
+//! Whole files: written beside their destination under another name, then renamed over it.
+
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+/// Why a file was not written. Whatever stood at the path before still stands there.
+#[derive(Debug, thiserror::Error)]
+#[error("{}: cannot write: {source}; choose a writable path with -o", path.display())]
+pub struct OutputError {
+    /// Destination.
+    pub path: PathBuf,
+    /// What the system said.
+    pub source: std::io::Error,
+}
+
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// Tells early, before the work, that a file could not be written because its folder does not exist.
+///
+/// # Errors
+/// The folder of `path` is missing.
+pub fn check_folder(path: &Path) -> Result<(), OutputError> {
+    let folder = folder_of(path);
+    if folder.is_dir() {
+        return Ok(());
+    }
+    let source = std::io::Error::other(format!("the folder {} does not exist", folder.display()));
+    Err(OutputError { path: path.to_owned(), source })
+}
+
+/// Writes a file through `content`, whole or not at all.
+///
+/// # Errors
+/// The folder does not exist or is not writable, the disk is full, or `content` fails; the destination is untouched then.
+pub fn write_whole(
+    path: &Path,
+    content: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
+) -> Result<(), OutputError> {
+    let write = || -> std::io::Result<()> {
+        if path.is_dir() {
+            return Err(std::io::Error::other("it is a folder"));
+        }
+        let mut file = tempfile::Builder::new();
+        file.prefix(".catoptric-").suffix(".part");
+        // The usual rights of a new file: a temporary one is private otherwise.
+        #[cfg(unix)]
+        file.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+        let file = file.tempfile_in(folder_of(path))?;
+        let mut writer = BufWriter::new(file);
+        content(&mut writer)?;
+        let file = writer.into_inner().map_err(std::io::IntoInnerError::into_error)?;
+        file.as_file().sync_all()?;
+        file.persist(path)?;
+        Ok(())
+    };
+    write().map_err(|source| OutputError { path: path.to_owned(), source })
+}

@@ -1,0 +1,233 @@
+//! The program as a user or a script meets it: formats, exit codes, bad input.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn mesh(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes").join(name).with_extension("obj")
+}
+
+struct Folder(tempfile::TempDir);
+
+impl Folder {
+    fn new() -> Self {
+        Self(tempfile::tempdir().expect("a temporary folder"))
+    }
+
+    fn file(&self, name: &str, content: &str) -> PathBuf {
+        let path = self.0.path().join(name);
+        std::fs::write(&path, content).expect("a writable folder");
+        path
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn run<I: AsRef<std::ffi::OsStr>>(&self, args: impl IntoIterator<Item = I>) -> Output {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_catoptric"));
+        command.args(args).current_dir(self.0.path()).output().expect("the program starts")
+    }
+
+    /// Runs arguments that must be refused with exit code 2, one line, and no file left behind.
+    fn refused(&self, args: &[&str]) -> String {
+        let before = self.names();
+        let output = self.run(args);
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{args:?}: {message}");
+        assert_eq!(message.lines().count(), 1, "{args:?}: {message}");
+        assert!(!message.contains("panicked"), "{args:?}: {message}");
+        assert_eq!(self.names(), before, "{args:?} left a file");
+        message
+    }
+
+    fn names(&self) -> Vec<std::ffi::OsString> {
+        let entries = std::fs::read_dir(self.0.path()).expect("a readable folder");
+        let mut names: Vec<_> = entries.map(|entry| entry.expect("an entry").file_name()).collect();
+        names.sort();
+        names
+    }
+}
+
+const QUAD: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+#[test]
+fn bad_meshes_are_refused_by_every_command_with_the_line() {
+    let folder = Folder::new();
+    let cases = [
+        ("empty", String::new(), "empty"),
+        ("index_too_large", format!("{QUAD}f 1 2 3 9\n"), ":5: "),
+        ("index_zero", format!("{QUAD}f 0 1 2\n"), ":5: "),
+        ("two_gon", format!("{QUAD}f 1 2\n"), ":5: "),
+        ("repeated_vertex", format!("{QUAD}f 1 2 2 3\n"), ":5: "),
+        ("duplicate_face", format!("{QUAD}f 1 2 3 4\nf 2 3 4 1\n"), ":6: "),
+        ("nan", format!("v nan 0 0\n{QUAD}f 2 3 4 5\n"), ":1: "),
+        ("crease_out_of_range", format!("{QUAD}f 1 2 3 4\nt crease 2/1/0 0 99 3\n"), ":6: "),
+        ("crease_no_edge", format!("{QUAD}f 1 2 3 4\nt crease 2/1/0 0 2 3\n"), ":6: "),
+        ("crease_nan", format!("{QUAD}f 1 2 3 4\nt crease 2/1/0 0 1 nan\n"), ":6: "),
+        ("crease_negative", format!("{QUAD}f 1 2 3 4\nt crease 2/1/0 0 1 -1\n"), ":6: "),
+        ("corner_out_of_range", format!("{QUAD}f 1 2 3 4\nt corner 1/1/0 7 3\n"), ":6: "),
+        ("hole_out_of_range", format!("{QUAD}f 1 2 3 4\nt hole 1/0/0 7\n"), ":6: "),
+        ("tag_truncated", format!("{QUAD}f 1 2 3 4\nt crease 2/1/0 0\n"), ":6: "),
+        ("tag_unknown", format!("{QUAD}f 1 2 3 4\nt wrinkle 0/0/0\n"), ":6: "),
+        ("not_text", "\0\u{1}\u{2}".repeat(500), "NUL"),
+    ];
+    for (name, text, expected) in &cases {
+        let path = folder.file(&format!("{name}.obj"), text);
+        let path = path.to_str().expect("a UTF-8 path");
+        folder.file("samples.csv", "face,u,v\n0,0.5,0.5\n");
+        for command in [
+            &["render", path, "-o", "out.png"][..],
+            &["verify", path, "--json", "out.json"],
+            &["info", path],
+            &["eval", path, "--samples", "samples.csv", "-o", "out.csv"],
+        ] {
+            let message = folder.refused(command);
+            assert!(message.contains(expected) && message.contains(name), "{name}: {message}");
+        }
+    }
+}
+
+#[test]
+fn bad_usage_is_refused() {
+    let folder = Folder::new();
+    for (args, expected) in [
+        (&["no-such-command"][..], "no-such-command"),
+        (&["render", "/no/such/file.obj"], "no such file"),
+        (&["render", "--size", "0x0"], "WIDTHxHEIGHT"),
+        (&["render", "--size", "99999x10"], "WIDTHxHEIGHT"),
+        (&["render", "--fov", "180"], "fov"),
+        (&["render", "--eye", "1,2"], "X,Y,Z"),
+        (&["render", "--eye", "1,2,nan"], "X,Y,Z"),
+        (&["render", "--pipeline", "magic"], "magic"),
+        (&["render", "--pattern", "no-such.png"], "no-such.png"),
+        (&["render", "-o", "no-such-folder/out.png"], "no-such-folder"),
+        (&["render", "-o", "out.tiff"], "out.tiff"),
+        (&["eval", "--samples", "no-such.csv"], "no-such.csv"),
+        (&["eval"], "--samples"),
+    ] {
+        let message = folder.refused(args);
+        assert!(message.contains(expected), "{args:?}: {message}");
+    }
+}
+
+#[test]
+fn bad_samples_are_refused_with_their_line() {
+    let folder = Folder::new();
+    for (text, expected) in [
+        ("", "header"),
+        ("u,v,face\n0.5,0.5,0\n", "header"),
+        ("face,u,v\n0,0.5,1.5\n", ":2: v = 1.5"),
+        ("face,u,v\n0,0.5,0.5\n0,-0.1,0\n", ":3: u = -0.1"),
+        ("face,u,v\n0,nan,0\n", ":2: u = NaN"),
+        ("face,u,v\n0,0.5,0.5\n99999,0.5,0.5\n", ":3: ptex face 99999"),
+        ("face,u,v\n0,0.5\n", ":2: "),
+        ("face,u,v\n-1,0.5,0.5\n", ":2: "),
+        ("face,u,v\nzero,0.5,0.5\n", ":2: "),
+    ] {
+        let path = folder.file("samples.csv", text);
+        let message = folder.refused(&["eval", "--samples", path.to_str().expect("UTF-8"), "-o", "out.csv"]);
+        assert!(message.contains(expected), "{text:?}: {message}");
+    }
+}
+
+/// Rows of a CSV file that `eval` wrote: numbers, and the kind.
+fn rows(path: &Path) -> Vec<(Vec<f64>, String)> {
+    let mut reader = csv::Reader::from_path(path).expect("a CSV file");
+    let header = reader.headers().expect("a header").iter().collect::<Vec<_>>().join(",");
+    assert_eq!(header, "face,u,v,x,y,z,xu,yu,zu,xv,yv,zv,nx,ny,nz,kind");
+    let row = |row: Result<csv::StringRecord, csv::Error>| {
+        let row = row.expect("a row");
+        let numbers = row.iter().take(15).filter(|x| !x.is_empty()).map(|x| x.parse().expect("a number")).collect();
+        (numbers, row[15].to_owned())
+    };
+    reader.into_records().map(row).collect()
+}
+
+#[test]
+fn evaluators_answer_in_order_and_agree() {
+    let folder = Folder::new();
+    let samples = folder.file("samples.csv", "face,u,v\n0,0.5,0.25\n3,0.125,0.5\n5,1,0.125\n2,0.3,0.9\n");
+    let mut tables = Vec::new();
+    for backend in ["cpu", "gpu", "osd"] {
+        let out = folder.path("out.csv");
+        let args = ["eval", "--samples", samples.to_str().expect("UTF-8"), "-o", "out.csv", "--backend", backend];
+        let output = folder.run(args.iter().copied().chain([mesh("cube").to_str().expect("UTF-8")]));
+        assert!(output.status.success(), "{backend}: {}", String::from_utf8_lossy(&output.stderr));
+        tables.push(rows(&out));
+    }
+    for table in &tables {
+        assert_eq!(table.iter().map(|(numbers, _)| numbers[0]).collect::<Vec<_>>(), [0.0, 3.0, 5.0, 2.0]);
+        for ((numbers, kind), (reference, _)) in table.iter().zip(&tables[0]) {
+            assert_eq!(kind, "smooth");
+            for (a, b) in numbers.iter().zip(reference) {
+                // f32 on the GPU: 2e-6 of the cube's diagonal, a few times that in derivatives.
+                assert!((a - b).abs() < 2e-5, "{numbers:?} {reference:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn holes_have_a_kind_and_no_numbers() {
+    let folder = Folder::new();
+    let samples = folder.file("samples.csv", "face,u,v\n5,0.5,0.5\n0,0.5,0.5\n");
+    for backend in ["cpu", "gpu", "osd"] {
+        let (mesh, samples) = (mesh("hole"), samples.as_path());
+        let args = ["eval", mesh.to_str().expect("UTF-8"), "--samples", samples.to_str().expect("UTF-8")];
+        let output = folder.run(args.iter().chain(&["-o", "out.csv", "--backend", backend]));
+        assert!(output.status.success());
+        let rows = rows(&folder.path("out.csv"));
+        assert_eq!((rows[0].0.len(), rows[0].1.as_str()), (3, "hole"));
+        assert_eq!((rows[1].0.len(), rows[1].1.as_str()), (15, "regular"));
+    }
+}
+
+#[test]
+fn info_counts_features_and_patches() {
+    let folder = Folder::new();
+    let output = folder.run(["info".as_ref(), mesh("pole_5").as_os_str(), "--json".as_ref()]);
+    let info: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(info["patches"]["smooth"], 5);
+    assert_eq!(info["interior_valences"]["5"], 1);
+    let text = folder.run(["info".as_ref(), mesh("pole_5").as_os_str()]);
+    assert!(String::from_utf8_lossy(&text.stdout).contains("smooth: 5"));
+}
+
+#[test]
+fn verify_passes_and_says_so_everywhere() {
+    let folder = Folder::new();
+    let meshes = [mesh("cube"), mesh("dart")];
+    let flags = ["verify", "--json", "v.json", "--size", "64x64"].map(PathBuf::from);
+    let output = folder.run(flags.iter().chain(&meshes));
+    let text = std::fs::read(folder.path("v.json")).expect("the report is written");
+    let report: serde_json::Value = serde_json::from_slice(&text).expect("JSON");
+    assert_eq!(report["pass"], true, "{}", String::from_utf8_lossy(&output.stdout));
+    assert!(output.status.success());
+    let tiers = |mesh: usize| -> std::collections::BTreeSet<String> {
+        let rows = report["meshes"][mesh]["tiers"].as_array().expect("rows");
+        rows.iter().map(|row| row["tier"].as_str().expect("a name").to_owned()).collect()
+    };
+    let expected = ["dyadic", "endcap", "fragment", "regular", "vertex"].map(String::from);
+    assert_eq!(tiers(0), expected.iter().cloned().collect());
+    // Where OpenSubdiv is wrong, the report names it.
+    assert!(!report["meshes"][1]["reference_known_wrong"].as_array().expect("a list").is_empty());
+}
+
+#[test]
+fn pictures_have_their_size_and_repeat_bit_by_bit() {
+    let folder = Folder::new();
+    let render = |name: &str, pipeline: &str| {
+        let mesh = mesh("corner");
+        let args = ["render", mesh.to_str().expect("UTF-8"), "-o", name, "--size", "96x64", "--pipeline", pipeline];
+        let output = folder.run(args);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        std::fs::read(folder.path(name)).expect("the picture is written")
+    };
+    for pipeline in ["limit", "polygon"] {
+        let first = render("a.png", pipeline);
+        assert_eq!(first, render("b.png", pipeline));
+        let picture = image::load_from_memory(&first).expect("a PNG");
+        assert_eq!((picture.width(), picture.height()), (96, 64));
+    }
+}

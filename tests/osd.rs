@@ -1,0 +1,123 @@
+//! The contract of the shim over OpenSubdiv: what fails, and how.
+
+use catoptric::mesh::{self, SubdivMesh};
+use catoptric::osd::{Answer, Bfr, Error, Far, Reference, Refiner};
+use std::path::Path;
+
+fn mesh(name: &str) -> SubdivMesh {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes").join(name).with_extension("obj");
+    mesh::read(&path).expect("a test mesh is valid")
+}
+
+/// The message of a call that must be refused by the shim or by the wrapper above it.
+fn refusal<T>(result: Result<T, Error>) -> String {
+    match result {
+        Ok(_) => panic!("accepted"),
+        Err(error) => error.to_string(),
+    }
+}
+
+#[test]
+fn the_library_is_the_one_we_checked() {
+    assert_eq!(catoptric::osd::version(), "3.5.0");
+}
+
+#[test]
+fn levels_beyond_ten_are_refused_before_they_corrupt_memory() {
+    let cube = mesh("cube");
+    for level in [0, 11, 12, 16, u32::MAX] {
+        assert!(refusal(Refiner::adaptive(&cube, level, 2)).contains("level"), "{level}");
+        assert!(refusal(Refiner::uniform(&cube, level)).contains("level"), "{level}");
+        assert!(refusal(Far::new(&cube, level)).contains("isolation must be 1 to 10"), "{level}");
+        assert!(refusal(Bfr::new(&cube, (level, 6))).contains("levels must be 1 to 10"), "{level}");
+        assert!(refusal(Bfr::new(&cube, (2, level))).contains("levels must be 1 to 10"), "{level}");
+    }
+    assert!(refusal(Refiner::adaptive(&cube, 4, 11)).contains("level"));
+}
+
+#[test]
+fn invalid_meshes_never_reach_opensubdiv() {
+    let mut broken = mesh("cube");
+    broken.face_vertices[3] = 99;
+    for message in [
+        refusal(Refiner::adaptive(&broken, 2, 2)),
+        refusal(Refiner::uniform(&broken, 1)),
+        refusal(Far::new(&broken, 4)),
+        refusal(Bfr::new(&broken, Bfr::DEFAULT_LEVELS)),
+    ] {
+        assert!(message.contains("vertex 99"), "{message}");
+    }
+}
+
+#[test]
+fn limit_masks_need_uniform_refinement() {
+    let refiner = Refiner::adaptive(&mesh("cube"), 3, 3).expect("it refines");
+    let points = refiner.interpolate(&mesh("cube").points).expect("it interpolates");
+    let last = refiner.vertex_counts()[refiner.level_count() - 1];
+    let message = refusal(refiner.limit(&points[points.len() - last..]));
+    assert!(message.starts_with("OpenSubdiv: "), "{message}");
+}
+
+#[test]
+fn a_level_out_of_range_is_an_error_and_the_refiner_survives_it() {
+    let refiner = Refiner::uniform(&mesh("cube"), 2).expect("it refines");
+    assert!(refusal(refiner.level(3)).contains("level out of range"));
+    let level = refiner.level(2).expect("level 2 exists");
+    // A level is a copy: it outlives the refiner.
+    drop(refiner);
+    assert_eq!(level.face_count(), 96);
+    assert_eq!(level.vertex_count(), 98);
+}
+
+#[test]
+fn faces_out_of_range_are_refused_by_bfr_and_unanswered_by_far() {
+    let cube = mesh("cube");
+    let mut bfr = Bfr::new(&cube, Bfr::DEFAULT_LEVELS).expect("a factory");
+    assert!(refusal(bfr.evaluate(&[(6, 0.5, 0.5)])).contains("out of range"));
+    let mut far = Far::new(&cube, 4).expect("a table");
+    let answers = far.evaluate(&[(6, 0.5, 0.5), (u32::MAX, 0.5, 0.5), (0, 0.5, 0.5)]).expect("it evaluates");
+    assert_eq!(answers.iter().map(|a| a.answer == Answer::None).collect::<Vec<_>>(), [true, true, false]);
+}
+
+#[test]
+fn messages_belong_to_the_thread_that_failed() {
+    let cube = mesh("cube");
+    std::thread::scope(|scope| {
+        for level in 11..15 {
+            let cube = &cube;
+            scope.spawn(move || {
+                for _ in 0..50 {
+                    assert!(refusal(Far::new(cube, level)).contains("isolation"));
+                    assert!(Far::new(cube, 2).is_ok());
+                }
+            });
+        }
+    });
+}
+
+#[test]
+fn holes_have_no_answer() {
+    let hole = mesh("hole");
+    let samples = [(5, 0.5, 0.5), (0, 0.5, 0.5)];
+    let far = Far::new(&hole, 4).and_then(|mut far| far.evaluate(&samples)).expect("it evaluates");
+    let bfr = Bfr::new(&hole, (2, 6)).and_then(|mut bfr| bfr.evaluate(&samples)).expect("it evaluates");
+    for answers in [far, bfr] {
+        assert_eq!(answers[0].answer, Answer::None);
+        assert_eq!(answers[1].answer, Answer::Regular);
+    }
+}
+
+#[test]
+fn references_agree_on_derivatives_of_n_gons() {
+    // Their parameters differ by a factor of two on the quadrants of an n-gon; the shim hides it.
+    let n_gons = mesh("n_gons");
+    let samples: Vec<_> = (0..20).map(|i| (i, 0.75, 0.25)).collect();
+    let far = Far::new(&n_gons, 10).and_then(|mut far| far.evaluate(&samples)).expect("it evaluates");
+    let bfr = Bfr::new(&n_gons, (10, 10)).and_then(|mut bfr| bfr.evaluate(&samples)).expect("it evaluates");
+    for (far, bfr) in far.iter().zip(&bfr) {
+        // Inside regular patches of both, level 10 or not: rounding only.
+        assert!(far.position.distance(bfr.position) < 1e-13);
+        assert!(far.du.distance(bfr.du) < 1e-12, "{far:?} {bfr:?}");
+        assert!(far.dv.distance(bfr.dv) < 1e-12);
+    }
+}
