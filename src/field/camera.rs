@@ -1,6 +1,5 @@
 //! A pinhole camera in f64.
 
-use crate::stam::LimitSurface;
 use glam::{DVec3, dvec3};
 
 /// Vertical field of view of a fitted camera, in degrees: a short telephoto lens, as product photographers use.
@@ -35,45 +34,37 @@ pub struct Axes {
 }
 
 impl Camera {
-    /// The three-quarter view: from the front left and above, so far away that all `points` (see [`outline`]) fit into the picture. `up` is the vertical of the model.
-    pub fn fit(points: &[DVec3], size: [u32; 2], up: DVec3) -> Camera {
+    /// The three-quarter view: from the front left and above, so far away that the box `bounds` fits into the picture.
+    /// `up` is the vertical of the model.
+    pub fn fit(bounds: [DVec3; 2], size: [u32; 2], up: DVec3) -> Camera {
         let up = up.try_normalize().unwrap_or(DVec3::Z);
-        let [first, second] = horizontal_axes(bounds(points), up);
+        let [first, second] = horizontal_axes(bounds, up);
         // Looking mostly at the long side, turned towards the front: the view in which bodywork is judged.
         let horizontal = (first * 0.62 + second * 0.78).normalize();
         let elevation = 24f64.to_radians();
         let direction = horizontal * elevation.cos() + up * elevation.sin();
-        Camera::fit_from(points, size, up, direction, DEFAULT_FOV)
+        Camera::fit_from(bounds, size, up, direction, DEFAULT_FOV)
     }
 
-    /// A camera that sees all `points` from `direction` (pointing from the object to the eye), filling the picture but for
-    /// a margin.
-    pub fn fit_from(points: &[DVec3], size: [u32; 2], up: DVec3, direction: DVec3, fov: f64) -> Camera {
+    /// A camera that sees the box `bounds` from `direction` (pointing from the object to the eye).
+    pub fn fit_from(bounds: [DVec3; 2], size: [u32; 2], up: DVec3, direction: DVec3, fov: f64) -> Camera {
         /// Part of the picture's half width and half height that the object may fill.
-        const FILL: f64 = 0.88;
-        let box_ = bounds(points);
-        let middle = (box_[0] + box_[1]) * 0.5;
-        let diagonal = (box_[1] - box_[0]).length().max(f64::MIN_POSITIVE);
+        const FILL: f64 = 0.90;
+        let target = (bounds[0] + bounds[1]) * 0.5;
+        let diagonal = (bounds[1] - bounds[0]).length().max(f64::MIN_POSITIVE);
         let direction = direction.try_normalize().unwrap_or(DVec3::X);
-        let mut camera = Camera { eye: middle + direction * diagonal, target: middle, up, fov, size };
+        let mut camera = Camera { eye: target + direction * diagonal, target, up, fov, size };
         let axes = camera.axes();
-        // d = point - target, moved by (x, y) in the picture plane, fits at distance D when
-        // scale |d . right - x| <= FILL (D + d . forward), and likewise for up: for each of the four sides the outermost
-        // point gives one line in (x, D); opposite sides meet where the object is centred and just fits.
-        let reach = |axis: DVec3, scale: f64| {
-            let side = |sign: f64| {
-                let cut = |p: &DVec3| sign * scale / FILL * (*p - middle).dot(axis) - (*p - middle).dot(axes.forward);
-                points.iter().map(cut).fold(f64::NEG_INFINITY, f64::max)
-            };
-            let (high, low) = (side(1.0), side(-1.0));
-            ((high + low) * 0.5, (high - low) * 0.5 * FILL / scale)
-        };
-        if !points.is_empty() {
-            let (across, x) = reach(axes.right, axes.scale[0]);
-            let (tall, y) = reach(axes.up, axes.scale[1]);
-            camera.target = middle + axes.right * x + axes.up * y;
-            camera.eye = camera.target + direction * across.max(tall).max(diagonal * 0.1);
-        }
+        // A corner d (from the target) fits at distance D when scale |d . axis| <= FILL (D + d . forward).
+        let distance = corners(bounds)
+            .map(|corner| {
+                let d = corner - target;
+                let reach = (axes.scale[0] * d.dot(axes.right).abs()).max(axes.scale[1] * d.dot(axes.up).abs());
+                reach / FILL - d.dot(axes.forward)
+            })
+            .into_iter()
+            .fold(diagonal * 0.1, f64::max);
+        camera.eye = target + direction * distance;
         camera
     }
 
@@ -135,27 +126,8 @@ fn handed(first: DVec3, up: DVec3) -> f64 {
     if second.dot(front) < 0.0 { -1.0 } else { 1.0 }
 }
 
-/// Points spread over a surface, some 20,000 at most: what [`Camera::fit`] needs to know of it.
-pub fn outline(surface: &LimitSurface) -> Vec<DVec3> {
-    const POINTS: f64 = 20_000.0;
-    let faces = surface.ptex_count();
-    let side = (POINTS / faces.max(1) as f64).sqrt().clamp(2.0, 9.0) as u32;
-    let stride = (faces as f64 * f64::from(side * side) / POINTS).ceil().max(1.0) as usize;
-    let at = |k: u32| f64::from(k) / f64::from(side - 1);
-    let of_face = |ptex: usize| {
-        (0..side * side).filter_map(move |k| surface.evaluate_ptex(ptex as u32, [at(k % side), at(k / side)]))
-    };
-    (0..faces).step_by(stride).flat_map(of_face).map(|(_, jet)| jet.position).collect()
-}
-
-/// The box round points; the unit box if there are none.
-pub fn bounds(points: &[DVec3]) -> [DVec3; 2] {
-    let grow = |bounds: Option<[DVec3; 2]>, &p: &DVec3| Some(bounds.map_or([p, p], |[a, b]| [a.min(p), b.max(p)]));
-    points.iter().fold(None, grow).unwrap_or([DVec3::ZERO, DVec3::ONE])
-}
-
 /// The eight corners of a box.
-fn corners([low, high]: [DVec3; 2]) -> [DVec3; 8] {
+pub(super) fn corners([low, high]: [DVec3; 2]) -> [DVec3; 8] {
     std::array::from_fn(|i| {
         let pick = |bit: usize, a: f64, b: f64| if i >> bit & 1 == 0 { a } else { b };
         dvec3(pick(0, low.x, high.x), pick(1, low.y, high.y), pick(2, low.z, high.z))
@@ -170,25 +142,21 @@ mod tests {
     fn fitted_box_fills_the_picture_and_stays_inside() {
         for (size, up) in [([640, 480], DVec3::Z), ([300, 900], DVec3::Y)] {
             let bounds = [dvec3(1000.0, -502.0, 200.0), dvec3(1004.0, -500.0, 201.0)];
-            let camera = Camera::fit(&corners(bounds), size, up);
-            let mut reach = [0.0f64; 4];
+            let camera = Camera::fit(bounds, size, up);
+            let mut reach: f64 = 0.0;
             for corner in corners(bounds) {
                 let [x, y] = camera.project(corner).unwrap();
-                let ndc = [2.0 * x / f64::from(size[0]) - 1.0, 2.0 * y / f64::from(size[1]) - 1.0];
-                reach = [0, 1, 2, 3].map(|k: usize| reach[k].max(ndc[k / 2] * [1.0, -1.0][k % 2]));
+                reach = reach.max((2.0 * x / f64::from(size[0]) - 1.0).abs());
+                reach = reach.max((2.0 * y / f64::from(size[1]) - 1.0).abs());
             }
-            let largest = reach.into_iter().fold(0.0, f64::max);
-            assert!((largest - 0.88).abs() < 1e-9, "{reach:?}");
-            // Centred in the direction that decides.
-            let decides = usize::from(reach[2].max(reach[3]) > reach[0].max(reach[1]));
-            assert!((reach[2 * decides] - reach[2 * decides + 1]).abs() < 1e-9, "{reach:?}");
+            assert!((reach - 0.9).abs() < 1e-9, "{reach}");
             assert!(camera.near(bounds) > 0.0);
         }
     }
 
     #[test]
     fn pixel_ray_inverts_project() {
-        let camera = Camera::fit(&[DVec3::ZERO, DVec3::ONE], [64, 48], DVec3::Y);
+        let camera = Camera::fit([DVec3::ZERO, DVec3::ONE], [64, 48], DVec3::Y);
         let ray = camera.pixel_ray(10.25, 40.5);
         let [x, y] = camera.project(camera.eye + ray * 3.7).unwrap();
         assert!((x - 10.25).abs() < 1e-10 && (y - 40.5).abs() < 1e-10);

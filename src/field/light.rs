@@ -29,32 +29,22 @@ impl Light {
         Light { center, axes: [along.cross(facing), along], half: [f64::INFINITY; 2], spacing }
     }
 
-    /// A ceiling of tubes for an object inside `bounds` seen from `eye`: above the object and a little behind it, so that
-    /// level tops mirror it into the eye as well as shoulders that face the eye, its tubes along the object's longest side (on a car they flow from bonnet to
-    /// boot). It ends where an endless one would crowd its lines below what a picture resolves. The constants are
-    /// empirical, chosen by looking at bodies of many shapes.
+    /// A ceiling of tubes for an object inside `bounds` seen from `eye`: one and a half diagonals above the object, tilted
+    /// towards the eye so that flanks as well as tops mirror it, its tubes along the object's longest side (on a car
+    /// they flow from bonnet to boot). The constants are empirical: chosen by looking at bodies of many shapes.
     pub fn fit(bounds: [DVec3; 2], eye: DVec3, up: DVec3) -> Light {
-        /// Distance from the middle of the object, in diagonals.
         const HEIGHT: f64 = 1.5;
-        /// From the vertical, away from the eye.
-        const TILT_DEGREES: f64 = 18.0;
-        /// Degrees between neighbouring tubes, seen from the object straight below.
-        const SPACING_DEGREES: f64 = 11.0;
-        /// Tubes on each side of the middle.
-        const TUBES: f64 = 11.0;
-        /// Half length of a tube, in diagonals.
-        const LENGTH: f64 = 4.0;
+        const TILT_DEGREES: f64 = 24.0;
+        const SPACING: f64 = 0.2;
         let up = up.try_normalize().unwrap_or(DVec3::Z);
         let middle = (bounds[0] + bounds[1]) * 0.5;
         let diagonal = (bounds[1] - bounds[0]).length().max(f64::MIN_POSITIVE);
-        let away = middle - eye;
-        let away = (away - up * away.dot(up)).try_normalize().unwrap_or(DVec3::ZERO);
+        let towards = eye - middle;
+        let towards = (towards - up * towards.dot(up)).try_normalize().unwrap_or(DVec3::ZERO);
         let (sin, cos) = TILT_DEGREES.to_radians().sin_cos();
-        let direction = (up * cos + away * sin).normalize();
+        let direction = (up * cos + towards * sin).normalize();
         let [long, _] = horizontal_axes(bounds, up);
-        let spacing = diagonal * HEIGHT * SPACING_DEGREES.to_radians().tan();
-        let half = [(TUBES + 0.5) * spacing, LENGTH * diagonal];
-        Light { half, ..Light::new(middle + direction * (diagonal * HEIGHT), -direction, long, spacing) }
+        Light::new(middle + direction * (diagonal * HEIGHT), -direction, long, diagonal * SPACING)
     }
 
     /// Unit normal of the plane.

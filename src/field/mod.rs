@@ -9,7 +9,7 @@ mod light;
 mod pattern;
 mod reflection;
 
-pub use camera::{Axes, Camera, DEFAULT_FOV, bounds, outline};
+pub use camera::{Axes, Camera, DEFAULT_FOV};
 pub use light::Light;
 pub use pattern::{Pattern, Picture};
 pub use reflection::{reflection, reflection_direction};
