@@ -31,7 +31,7 @@ struct Shade {
 // Field value at a pixel; z above 0 where it is defined.
 fn field_at(pixel: vec2i) -> vec3f {
     let s = textureLoad(packed, pixel, 0);
-    return vec3f(bitcast<vec2f>(s.xy), unpack2x16float(s.w).y);
+    return vec3f(bitcast<vec2f>(s.xy), unpack2x16snorm(s.w).y);
 }
 
 // Change of the field over one pixel, from the neighbours on both sides. Where one side changes 4 times as much as the
@@ -76,7 +76,7 @@ fn radiance(field: vec2f, jx: vec2f, jy: vec2f) -> vec3f {
 fn shade(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let pixel = vec2i(position.xy);
     let s = textureLoad(packed, pixel, 0);
-    let angles = unpack2x16float(s.w);
+    let angles = unpack2x16snorm(s.w);
     let facing = abs(angles.x);
     // Towards the eye, whichever side is seen.
     let normal = from_octahedral(unpack2x16snorm(s.z)) * sign(angles.x);

@@ -30,5 +30,5 @@ fn packed_surface(patch_id: u32, position: vec3f, normal: vec3f) -> vec4u {
     let facing = -dot(normal, line) / length(line);
     let elevation = select(-1.0, max(value.elevation, 1e-4), value.defined > 0.0);
     return vec4u(bitcast<vec2u>(value.point), pack2x16snorm(octahedral(normal)),
-        pack2x16float(vec2f(facing, elevation)));
+        pack2x16snorm(vec2f(facing, elevation)));
 }

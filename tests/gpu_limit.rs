@@ -1,0 +1,156 @@
+//! The WGSL limit against the f64 limit at the same samples.
+
+mod gpu_support;
+
+use catoptric::gpu::{AdapterChoice, Gpu, GpuError, PatchNet, Sample};
+use catoptric::mesh::SubdivMesh;
+use catoptric::stam::{Jet, LimitSurface, Net, weights};
+use glam::{DVec3, dvec3};
+use gpu_support::{Random, gpu, mesh, pole};
+
+/// Positions are sums of 16 products in f32 of numbers of the size of the patch, which is at most the diagonal: 20
+/// roundings of 2^-24 (6e-8) each.
+const POSITION: f64 = 2e-6;
+/// Normals in degrees at the 99.99th percentile (design.md 3.2): 1/100 pixel of reflection line is 1.4e-3. A derivative is
+/// off by 20 x 6e-8 of the patch's size, so the bound holds where that is less than some 15 times the derivative.
+const NORMAL_DEGREES: f64 = 1e-3;
+/// Derivatives cancel: 20 roundings of the net's size, which is a few times the derivative's, and 2^-24 more for the power.
+const DERIVATIVE: f64 = 1e-5;
+
+fn angle_degrees(a: DVec3, b: DVec3) -> f64 {
+    a.cross(b).length().atan2(a.dot(b)).to_degrees()
+}
+
+/// Parameters in every corner, on every edge, in every level that the tables hold, and anywhere.
+fn parameters(seed: u64) -> Vec<[f32; 2]> {
+    let mut random = Random::new(seed);
+    let mut uv = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+    for n in 0..=23 {
+        let x = 0.5f32.powi(n);
+        uv.extend([[x, 0.0], [0.0, x], [x, x], [x, x * random.next() as f32], [x * random.next() as f32, x]]);
+        uv.extend([[x - x / 16_777_216.0, x * 0.3], [x * 0.3, x - x / 16_777_216.0]]);
+    }
+    for _ in 0..60 {
+        let (a, b) = (random.next() as f32, random.next() as f32);
+        uv.extend([[a, b], [a, 0.0], [0.0, b], [a, 1.0], [1.0, b]]);
+    }
+    uv
+}
+
+/// Evaluates all patches of a mesh on both sides and compares.
+fn compare(mesh: &SubdivMesh) {
+    let surface = LimitSurface::new(mesh).expect("it has a surface");
+    let tables = gpu().upload(&surface).expect("it fits");
+    let samples: Vec<Sample> = (0..surface.patches().len() as u32)
+        .flat_map(|patch| parameters(u64::from(patch)).into_iter().map(move |uv| Sample { patch, uv }))
+        .collect();
+    let jets = gpu().evaluate(&tables, &samples).expect("the adapter works");
+    let diagonal = surface.diagonal();
+    let mut angles = Vec::new();
+    for (sample, jet) in samples.iter().zip(&jets) {
+        let exact: Jet = surface.evaluate(sample.patch as usize, sample.uv.map(f64::from));
+        let off = jet.position.distance(exact.position) / diagonal;
+        assert!(off <= POSITION, "{}: {sample:?} is off by {off:e}", mesh.name);
+        // At the extraordinary vertex derivatives are zero or infinite; both sides give those of an innermost level.
+        if sample.uv != [0.0, 0.0] {
+            for (found, expected) in [(jet.du, exact.du), (jet.dv, exact.dv)] {
+                let size = exact.du.length().max(exact.dv.length());
+                let off = found.distance(expected) / size;
+                assert!(off <= DERIVATIVE, "{}: derivative at {sample:?} is off by {off:e}", mesh.name);
+            }
+        }
+        // Rounding in a derivative turns the normal by that over the sine of the angle between the derivatives, which
+        // tends to zero at the tip of a cone (a sharp corner with faces all round).
+        let condition = exact.du.normalize_or_zero().cross(exact.dv.normalize_or_zero()).length();
+        if exact.normal != DVec3::ZERO {
+            angles.push(angle_degrees(jet.normal, exact.normal) * condition);
+        }
+    }
+    angles.sort_by(f64::total_cmp);
+    let percentile = angles[(angles.len() as f64 * 0.9999) as usize];
+    println!("{}: {} normals, 99.99%: {percentile:e}, max {:e}", mesh.name, angles.len(), angles[angles.len() - 1]);
+    assert!(percentile <= NORMAL_DEGREES, "{}: normals are off by {percentile:e} degrees", mesh.name);
+}
+
+#[test]
+fn extraordinary_vertices_of_every_kind() {
+    for valence in [3, 4, 5, 6, 8, 12] {
+        compare(&pole(valence, valence as u64));
+    }
+    for name in ["pole_3.obj", "pole_5.obj", "pole_8.obj", "dart.obj", "corner.obj", "infinitely_sharp_crease.obj"] {
+        compare(&mesh(name));
+    }
+    for name in ["semi_sharp_crease.obj", "n_gons.obj", "boundary_edge_only.obj", "boundary_edge_and_corner.obj"] {
+        compare(&mesh(name));
+    }
+}
+
+#[test]
+fn far_from_the_origin_nothing_changes() {
+    for valence in [3, 5, 8] {
+        compare(&pole(valence, 7).translated(dvec3(1000.0, -500.0, 200.0)));
+    }
+}
+
+/// Beyond the last stored level the last one serves again. What it leaves out has decayed to (mu/lambda)^23 of the tangents,
+/// mu the next eigenvalue: 5e-6 for N = 3, 1e-2 for N = 8; positions are scaled by lambda^24 or less on top.
+#[test]
+fn deeper_than_the_tables_nothing_breaks() {
+    for valence in [3, 5, 8] {
+        let surface = LimitSurface::new(&pole(valence, 2)).expect("it has a surface");
+        let tables = gpu().upload(&surface).expect("it fits");
+        let small = |n: i32| [[0.5f32.powi(n), 0.3 * 0.5f32.powi(n)], [0.0, 0.5f32.powi(n)]];
+        let tiny = (24..150).flat_map(small);
+        let samples: Vec<Sample> = tiny.map(|uv| Sample { patch: 0, uv }).collect();
+        for (sample, jet) in samples.iter().zip(gpu().evaluate(&tables, &samples).expect("the adapter works")) {
+            let exact = surface.evaluate(0, sample.uv.map(f64::from));
+            assert!(jet.position.distance(exact.position) <= POSITION * surface.diagonal(), "{sample:?} {jet:?}");
+            assert!(angle_degrees(jet.normal, exact.normal) < 0.5, "{sample:?} {jet:?} {exact:?}");
+            assert!(jet.du.is_finite() && jet.dv.is_finite(), "{sample:?} {jet:?}");
+        }
+    }
+}
+
+#[test]
+fn size_does_not_matter() {
+    for scale in [1e-9, 1e12] {
+        let mut mesh = pole(5, 3);
+        mesh.points.iter_mut().for_each(|p| *p *= scale);
+        compare(&mesh);
+    }
+}
+
+/// A net that no mesh is behind: the upload takes patches from any source.
+#[test]
+fn regular_nets_need_no_mesh() {
+    let mut random = Random::new(11);
+    let nets: Vec<[DVec3; 16]> = (0..8)
+        .map(|_| {
+            std::array::from_fn(|k| {
+                dvec3((k % 4) as f64, (k / 4) as f64, 0.0) + dvec3(random.next(), random.next(), random.next())
+            })
+        })
+        .collect();
+    let patch = |&net: &[DVec3; 16]| PatchNet { depth: 0, transition: 0, net: Net::Regular(net), normal: DVec3::ZERO };
+    let patches: Vec<PatchNet> = nets.iter().map(patch).collect();
+    let tables = gpu().upload_patches(patches.as_slice()).expect("it fits");
+    let uv = parameters(5);
+    let samples: Vec<Sample> = (0..8).flat_map(|patch| uv.iter().map(move |&uv| Sample { patch, uv })).collect();
+    let jets = gpu().evaluate(&tables, &samples).expect("the adapter works");
+    for (sample, jet) in samples.iter().zip(&jets) {
+        let terms = weights(sample.uv.map(f64::from)).into_iter().zip(nets[sample.patch as usize]);
+        let exact: DVec3 = terms.map(|(w, p)| w[0] * p).sum();
+        assert!(jet.position.distance(exact) <= POSITION * 4.0, "{sample:?}");
+    }
+}
+
+#[test]
+fn errors_name_what_is_wrong() {
+    let missing = Gpu::with(&AdapterChoice::Named("no such adapter".into())).map(drop);
+    assert!(matches!(missing, Err(GpuError::NoAdapter)), "{missing:?}");
+    let tables = gpu().upload(&LimitSurface::new(&pole(5, 1)).expect("it has a surface")).expect("it fits");
+    let patch = tables.patches() as u32;
+    let error = gpu().evaluate(&tables, &[Sample { patch, uv: [0.5; 2] }]).map(drop);
+    assert!(matches!(error, Err(GpuError::Patch { sample: 0, .. })), "{error:?}");
+    assert_eq!(gpu().evaluate(&tables, &[]).expect("nothing to do"), []);
+}

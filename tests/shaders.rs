@@ -1,0 +1,63 @@
+//! Every WGSL entry point is valid, and every struct that Rust shares with WGSL has the same layout on both sides.
+
+use catoptric::gpu::records::*;
+use catoptric::gpu::shader::{MODULES, Module};
+use naga::{TypeInner, front::wgsl, valid};
+use std::mem::offset_of;
+
+fn parse(module: &Module) -> naga::Module {
+    let source = module.source();
+    wgsl::parse_str(&source).unwrap_or_else(|e| panic!("{}: {}", module.name, e.emit_to_string(&source)))
+}
+
+#[test]
+fn entry_points_are_valid() {
+    for module in MODULES {
+        let parsed = parse(&module);
+        assert!(!parsed.entry_points.is_empty(), "{} has no entry point", module.name);
+        let mut validator = valid::Validator::new(valid::ValidationFlags::all(), valid::Capabilities::empty());
+        if let Err(error) = validator.validate(&parsed) {
+            panic!("{}: {}", module.name, error.emit_to_string(&module.source()));
+        }
+    }
+}
+
+/// Offsets of the fields of a WGSL struct, and its size.
+fn layout(name: &str) -> (Vec<(String, usize)>, usize) {
+    for module in MODULES {
+        for (_, ty) in parse(&module).types.iter() {
+            if let (Some(found), TypeInner::Struct { members, span }) = (&ty.name, &ty.inner)
+                && found == name
+            {
+                let fields = members.iter().map(|m| (m.name.clone().unwrap_or_default(), m.offset as usize));
+                return (fields.collect(), *span as usize);
+            }
+        }
+    }
+    panic!("no shader has a struct {name}");
+}
+
+/// Compares a WGSL struct with its host twin: every WGSL field at the same offset, and the same size.
+macro_rules! same_layout {
+    ($wgsl:literal, $host:ty { $($field:ident),+ $(,)? }) => {
+        let (fields, size) = layout($wgsl);
+        let fields: Vec<_> = fields.iter().map(|(name, offset)| (name.as_str(), *offset)).collect();
+        assert_eq!(fields, [$((stringify!($field), offset_of!($host, $field))),+], "fields of {}", $wgsl);
+        assert_eq!(size, size_of::<$host>(), "size of {}", $wgsl);
+    };
+}
+
+#[test]
+fn structs_have_the_same_layout_on_both_sides() {
+    same_layout!("Draw", DrawRecord { first, group_size, padding });
+    same_layout!("Frame", FrameRecord {
+        clip_x, near, clip_y, focal, clip_w, proxy_level, scale, shift, size, padding
+    });
+    same_layout!("SampleRecord", SampleRecord { uv, patch_id, padding });
+    same_layout!("JetRecord", JetRecord { position, du, dv, normal });
+    same_layout!("Light", LightRecord { center, spacing, axis_x, half_x, axis_y, half_y });
+    same_layout!("Shade", ShadeRecord {
+        paint, width, tube, pattern, top, padding0, bottom, padding1, up, padding2, key, padding3, picture_scale, padding4
+    });
+    same_layout!("Resolve", ResolveRecord { top, samples, bottom, row, rows });
+}
