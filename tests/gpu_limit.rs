@@ -59,9 +59,10 @@ fn compare(mesh: &SubdivMesh) {
                 assert!(off <= DERIVATIVE, "{}: derivative at {sample:?} is off by {off:e}", mesh.name);
             }
         }
-        // Rounding in a derivative turns the normal by that over the sine of the angle between the derivatives, which
-        // tends to zero at the tip of a cone (a sharp corner with faces all round).
-        let condition = exact.du.normalize_or_zero().cross(exact.dv.normalize_or_zero()).length();
+        // Derivatives are rounded like the larger of the two, which turns the normal by that over the height of the
+        // parallelogram: it tends to zero at the tip of a cone (a sharp corner with faces all round).
+        let size = exact.du.length().max(exact.dv.length());
+        let condition = exact.du.cross(exact.dv).length() / size.powi(2);
         if exact.normal != DVec3::ZERO {
             angles.push(angle_degrees(jet.normal, exact.normal) * condition);
         }
