@@ -1,18 +1,25 @@
 // Exact limit position, normal and field at every pixel's (patch, u, v). Host side: passes/limit.rs.
+// The depth test of these passes skips pixels that see nothing.
 
 @group(1) @binding(0) var visible_patch: texture_2d<u32>;
 @group(1) @binding(1) var visible_uv: texture_2d<f32>;
 
+fn limit_at(pixel: vec2u, patch_id: u32) -> LimitPoint {
+    return limit_point(textureLoad(patches, at(patch_id), 0), textureLoad(visible_uv, pixel, 0).xy);
+}
+
 @fragment
-fn limit(@builtin(position) pixel: vec4f) -> Surface {
-    let tile = in_tile(pixel.xy);
-    if is_outside(tile) {
-        return background();
-    }
-    let id = textureLoad(visible_patch, tile, 0).x;
-    if id == 0u {
-        return background();
-    }
-    let p = limit_point(textureLoad(patches, at(id - 1u), 0), textureLoad(visible_uv, tile, 0).xy);
-    return surface(id - 1u, p.position, p.normal);
+fn limit(@builtin(position) position: vec4f) -> @location(0) vec4u {
+    let pixel = vec2u(position.xy);
+    let patch_id = textureLoad(visible_patch, pixel, 0).x - 1u;
+    let p = limit_at(pixel, patch_id);
+    return packed_surface(patch_id, p.position, p.normal);
+}
+
+@fragment
+fn limit_full(@builtin(position) position: vec4f) -> Surface {
+    let pixel = vec2u(position.xy);
+    let patch_id = textureLoad(visible_patch, pixel, 0).x - 1u;
+    let p = limit_at(pixel, patch_id);
+    return surface(patch_id, p.position, p.normal);
 }

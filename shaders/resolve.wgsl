@@ -1,8 +1,14 @@
-// Mean of each pixel's samples, in linear light, into sRGB. Host side: passes/resolve.rs.
+// Mean of each pixel's samples over the background, in linear light, into sRGB. Host side: passes/resolve.rs.
 
 struct Resolve {
+    // Linear RGB of the background at the top and at the bottom of the picture.
+    top: vec3f,
     // Samples a pixel each way.
     samples: i32,
+    bottom: vec3f,
+    // First row of the tile, and rows of the picture.
+    row: f32,
+    rows: f32,
 }
 
 @group(0) @binding(0) var samples: texture_2d<f32>;
@@ -15,12 +21,15 @@ fn srgb(x: vec3f) -> vec3f {
 }
 
 @fragment
-fn resolve(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
+fn resolve(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let n = resolve_in.samples;
-    let first = vec2i(pixel.xy) * n;
-    var sum = vec3f(0.0);
+    let first = vec2i(position.xy) * n;
+    var sum = vec4f(0.0);
     for (var k = 0; k < n * n; k++) {
-        sum += textureLoad(samples, first + vec2i(k % n, k / n), 0).rgb;
+        sum += textureLoad(samples, first + vec2i(k % n, k / n), 0);
     }
-    return vec4f(srgb(sum / f32(n * n)), 1.0);
+    let mean = sum / f32(n * n);
+    let height = (position.y + resolve_in.row) / resolve_in.rows;
+    let background = mix(resolve_in.top, resolve_in.bottom, smoothstep(0.0, 1.0, height));
+    return vec4f(srgb(mean.rgb + background * (1.0 - mean.a)), 1.0);
 }

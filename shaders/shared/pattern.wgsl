@@ -1,12 +1,13 @@
 // Patterns filtered to the pixel. f64 twin with hard edges: src/field/pattern.rs.
 
-// Part of a pixel of width w (in periods) at s that lies in stripes `width` wide round the integers: the integral of the
-// pulse train over [s - w/2, s + w/2], exact for any w. Reduced to the nearest period first, for the sake of f32.
+// Part of a pixel of width w (in periods) at s that lies in stripes `width` wide round the integers: the mean of the
+// pulse train over [s - w/2, s + w/2]. Reduced to the nearest period first, for the sake of f32.
 fn stripe(s: f32, width: f32, w: f32) -> f32 {
     let x = s - round(s);
-    let filter_width = clamp(w, 1e-6, 1e6);
-    return clamp((pulse_integral(x + 0.5 * filter_width, width) - pulse_integral(x - 0.5 * filter_width, width))
-        / filter_width, 0.0, 1.0);
+    let h = 0.5 * clamp(w, 1e-6, 2.0);
+    let mean = clamp((pulse_integral(x + h, width) - pulse_integral(x - h, width)) / (2.0 * h), 0.0, 1.0);
+    // A box lets some of every frequency through: beyond its first zero (one period) that would only be moire.
+    return mix(mean, width, smoothstep(0.6, 1.0, w));
 }
 
 // Integral from -1/2 to x of the pulse train.

@@ -1,35 +1,34 @@
-// What the limit and polygon passes write: all that shading needs to know of the surface at a pixel.
+// What the limit and polygon passes find out at a pixel: in full for reading back, packed for shading.
 
 struct Surface {
-    // Relative to the patch's origin; w: cosine between the normal and the line of sight, 0 to 1.
+    // Relative to the patch's origin.
     @location(0) position: vec4f,
-    // Unit normal of the parametrisation; w: sine of the mirrored ray's elevation over the light plane.
+    // Unit normal of the parametrisation.
     @location(1) normal: vec4f,
-    // Field value; z: 1 where it is defined; w: 1 where the pixel is covered.
+    // Field value; z: 1 where it is defined.
     @location(2) field: vec4f,
 }
 
 @group(0) @binding(3) var views: texture_2d<f32>;
 @group(0) @binding(4) var<uniform> light: Light;
-@group(0) @binding(5) var<uniform> band: Band;
+
+// From the eye to a surface point: both relative to the patch's origin, so no digits are lost far away.
+fn sight(patch_id: u32, position: vec3f) -> vec3f {
+    return position - textureLoad(views, at(2u * patch_id + 1u), 0).xyz;
+}
 
 fn surface(patch_id: u32, position: vec3f, normal: vec3f) -> Surface {
-    // From the eye to the surface point: both relative to the patch's origin, so no digits are lost far away.
-    let sight = position - textureLoad(views, at(2u * patch_id + 1u), 0).xyz;
-    let value = field_value(sight, normal);
-    let facing = abs(dot(normal, sight)) / length(sight);
-    return Surface(vec4f(position, facing), vec4f(normal, value.elevation), vec4f(value.point, value.defined, 1.0));
+    let value = field_value(sight(patch_id, position), normal);
+    return Surface(vec4f(position, 0.0), vec4f(normal, 0.0), vec4f(value.point, value.defined, 0.0));
 }
 
-fn background() -> Surface {
-    return Surface(vec4f(0.0), vec4f(0.0), vec4f(0.0));
-}
-
-// Tile coordinates of a pixel of the surface textures, and whether the tile has it.
-fn in_tile(pixel: vec2f) -> vec2i {
-    return vec2i(pixel) + vec2i(0, band.first);
-}
-
-fn is_outside(at: vec2i) -> bool {
-    return at.y < 0 || at.y >= band.rows;
+// x, y: field value; z: the normal; w: cosine between the normal and the line of sight (negative where the back is seen)
+// and sine of the mirrored ray's elevation over the light plane, -1 where the field is undefined. Zero: no surface.
+fn packed_surface(patch_id: u32, position: vec3f, normal: vec3f) -> vec4u {
+    let line = sight(patch_id, position);
+    let value = field_value(line, normal);
+    let facing = -dot(normal, line) / length(line);
+    let elevation = select(-1.0, max(value.elevation, 1e-4), value.defined > 0.0);
+    return vec4u(bitcast<vec2u>(value.point), pack2x16snorm(octahedral(normal)),
+        pack2x16float(vec2f(facing, elevation)));
 }

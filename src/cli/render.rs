@@ -30,9 +30,9 @@ pub(super) struct RenderArgs {
     /// Exact limit at every pixel, or interpolated from the proxy's vertices
     #[arg(long, value_enum, default_value = "limit")]
     pipeline: PipelineName,
-    /// Level of the proxy tessellation: 2^LEVEL parts a face each way
-    #[arg(long, value_name = "LEVEL", default_value_t = 4, value_parser = clap::value_parser!(u32).range(0..=i64::from(MAX_PROXY_LEVEL)))]
-    proxy_level: u32,
+    /// Level of the proxy tessellation: 2^LEVEL parts a face each way [default: as fine as the picture asks for]
+    #[arg(long, value_name = "LEVEL", value_parser = clap::value_parser!(u32).range(0..=i64::from(MAX_PROXY_LEVEL)))]
+    proxy_level: Option<u32>,
     /// Samples a pixel each way
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SAMPLES)))]
     samples: u32,

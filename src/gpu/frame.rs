@@ -1,10 +1,10 @@
 //! Runs the passes in order and reads the results back.
 
 use super::device::Device;
-use super::passes::{self, Passes, Scene, Targets};
+use super::passes::{self, Passes, PictureTargets, Scene, SurfaceTargets, Visible};
 use super::view::{Tile, View};
 use super::{GpuError, Pipeline, Tables};
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, Vec3};
 use std::time::{Duration, Instant};
 
 /// Patch index of a pixel that sees no surface.
@@ -67,16 +67,14 @@ pub(super) fn render(device: &Device, passes: &Passes, tables: &Tables, view: &V
     let scene = timings.time("scene", || Scene::new(device, tables, view))?;
     let size = view.camera.size;
     let mut rgba8 = vec![0; 4 * size[0] as usize * size[1] as usize];
-    for tile in Tile::cover(size, view.samples) {
-        let targets = timings.time("targets", || Targets::new(device, &tile, view.pipeline));
-        timings.time("visibility", || passes::visibility::run(device, passes, &scene, &targets, &tile))?;
-        for rows in tile.bands() {
-            let band = passes::Band::new(device, &tile, rows)?;
-            timings.time(limit_step(view), || passes::limit::run(device, passes, &scene, &targets, &band))?;
-            timings.time("shade", || passes::shade::run(device, passes, &scene, &targets, &tile, &band))?;
-        }
-        timings.time("resolve", || passes::resolve::run(device, passes, &targets, &tile))?;
-        let pixels: Vec<[u8; 4]> = timings.time("read back", || device.read_texture(&targets.colour))?;
+    for tile in Tile::cover(size, view.samples, Tile::PICTURE_SIDE) {
+        let visible = Visible::new(device, &tile, view.pipeline);
+        let picture = PictureTargets::new(device, &tile);
+        timings.time("visibility", || passes::visibility::run(device, passes, &scene, &visible, &tile))?;
+        timings.time(limit_step(view), || passes::limit::run(device, passes, &scene, &visible, &picture.surface))?;
+        timings.time("shade", || passes::shade::run(device, passes, &scene, &visible, &picture))?;
+        timings.time("resolve", || passes::resolve::run(device, passes, &scene, &picture, &tile))?;
+        let pixels: Vec<[u8; 4]> = timings.time("read back", || device.read_texture(&picture.colour))?;
         let [origin, tile_size] = tile.pixels();
         paste(bytemuck::cast_slice_mut::<u8, [u8; 4]>(&mut rgba8), size, &pixels, origin, tile_size);
     }
@@ -91,7 +89,6 @@ pub(super) fn inspect(
 ) -> Result<SurfaceImage, GpuError> {
     view.check()?;
     let mut timings = Timings::default();
-    timings.time("compile", || passes.prepare(device, view.pipeline));
     let scene = timings.time("scene", || Scene::new(device, tables, view))?;
     let size = view.camera.size;
     let count = size[0] as usize * size[1] as usize;
@@ -104,21 +101,12 @@ pub(super) fn inspect(
         field: vec![None; count],
         timings: Timings::default(),
     };
-    for tile in Tile::cover(size, 1) {
-        let targets = Targets::new(device, &tile, view.pipeline);
-        timings.time("visibility", || passes::visibility::run(device, passes, &scene, &targets, &tile))?;
-        timings.time("read back", || -> Result<(), GpuError> {
-            let ids: Vec<u32> = device.read_texture(&targets.patch)?;
-            let patch: Vec<u32> = ids.iter().map(|id| id.wrapping_sub(1)).collect();
-            paste(&mut image.patch, size, &patch, tile.origin, tile.size);
-            paste(&mut image.uv, size, &device.read_texture(&targets.uv)?, tile.origin, tile.size);
-            Ok(())
-        })?;
-        for rows in tile.bands() {
-            let band = passes::Band::new(device, &tile, rows)?;
-            timings.time(limit_step(view), || passes::limit::run(device, passes, &scene, &targets, &band))?;
-            timings.time("read back", || read_band(device, tables, &targets, &tile, &band, &mut image))?;
-        }
+    for tile in Tile::cover(size, 1, Tile::SURFACE_SIDE) {
+        let visible = Visible::new(device, &tile, view.pipeline);
+        let surface = SurfaceTargets::new(device, &tile);
+        timings.time("visibility", || passes::visibility::run(device, passes, &scene, &visible, &tile))?;
+        timings.time(limit_step(view), || passes::limit::run_full(device, passes, &scene, &visible, &surface))?;
+        timings.time("read back", || read_tile(device, tables, &visible, &surface, &tile, &mut image))?;
     }
     image.timings = timings;
     Ok(image)
@@ -131,40 +119,33 @@ fn limit_step(view: &View) -> &'static str {
     }
 }
 
-/// Reads the surface textures of one band into the image of the whole picture.
-fn read_band(
+/// Reads one tile into the image of the whole picture, a texture at a time.
+fn read_tile(
     device: &Device,
     tables: &Tables,
-    targets: &Targets,
+    visible: &Visible,
+    surface: &SurfaceTargets,
     tile: &Tile,
-    band: &passes::Band,
     image: &mut SurfaceImage,
 ) -> Result<(), GpuError> {
-    let unit = tables.unit();
-    let width = tile.size[0] as usize;
-    // The textures hold one row before and after the band.
-    let inner = width..width * (1 + band.rows.len());
-    let origin = [tile.origin[0], tile.origin[1] + band.rows.start];
-    let band_size = [tile.size[0], band.rows.len() as u32];
-    let size = image.size;
-    let rows =
-        |texture| -> Result<Vec<[f32; 4]>, GpuError> { Ok(device.read_texture(texture)?[inner.clone()].to_vec()) };
-    let normal: Vec<_> = rows(&targets.normal)?.iter().map(|n| [n[0], n[1], n[2]]).collect();
-    paste(&mut image.normal, size, &normal, origin, band_size);
+    let (size, unit) = (image.size, tables.unit());
+    let ids: Vec<u32> = device.read_texture(&visible.patch)?;
+    let patch: Vec<u32> = ids.iter().map(|id| id.wrapping_sub(1)).collect();
+    paste(&mut image.patch, size, &patch, tile.origin, tile.size);
+    paste(&mut image.uv, size, &device.read_texture(&visible.uv)?, tile.origin, tile.size);
+    let local: Vec<[f32; 4]> = device.read_texture(&surface.position)?;
+    let world = |(p, &patch): (&[f32; 4], &u32)| match patch {
+        NO_PATCH => DVec3::ZERO,
+        patch => tables.origin(patch as usize) + Vec3::new(p[0], p[1], p[2]).as_dvec3() * unit,
+    };
+    let position: Vec<DVec3> = local.iter().zip(&patch).map(world).collect();
+    paste(&mut image.position, size, &position, tile.origin, tile.size);
+    let normal: Vec<[f32; 4]> = device.read_texture(&surface.normal)?;
+    let normal: Vec<[f32; 3]> = normal.iter().map(|n| [n[0], n[1], n[2]]).collect();
+    paste(&mut image.normal, size, &normal, tile.origin, tile.size);
+    let field: Vec<[f32; 4]> = device.read_texture(&surface.field)?;
     let value = |f: &[f32; 4]| (f[2] > 0.0).then(|| DVec2::new(f64::from(f[0]), f64::from(f[1])) * unit);
-    let field: Vec<_> = rows(&targets.field)?.iter().map(value).collect();
-    paste(&mut image.field, size, &field, origin, band_size);
-    let local: Vec<_> =
-        rows(&targets.position)?.iter().map(|p| DVec3::new(p[0].into(), p[1].into(), p[2].into())).collect();
-    paste(&mut image.position, size, &local, origin, band_size);
-    for y in 0..band_size[1] {
-        for x in 0..band_size[0] {
-            let at = (origin[1] + y) as usize * size[0] as usize + (origin[0] + x) as usize;
-            if image.patch[at] != NO_PATCH {
-                image.position[at] = tables.origin(image.patch[at] as usize) + image.position[at] * unit;
-            }
-        }
-    }
+    paste(&mut image.field, size, &field.iter().map(value).collect::<Vec<_>>(), tile.origin, tile.size);
     Ok(())
 }
 

@@ -26,24 +26,22 @@ pub struct DrawRecord {
     pub padding: [u32; 2],
 }
 
-/// `Band`, shaders/shared/band.wgsl.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct BandRecord {
-    /// Row of the tile that the first row of the surface textures holds; -1 for the first band.
-    pub first: i32,
-    /// Rows of the tile.
-    pub rows: i32,
-    /// Zero.
-    pub padding: [i32; 2],
-}
-
 /// `Resolve`, shaders/resolve.wgsl.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct ResolveRecord {
+    /// Linear RGB of the background at the top of the picture.
+    pub top: [f32; 3],
     /// Samples a pixel each way.
     pub samples: i32,
+    /// Linear RGB of the background at the bottom.
+    pub bottom: [f32; 3],
+    /// First row of the tile in the picture, in pixels.
+    pub row: f32,
+    /// Rows of the picture.
+    pub rows: f32,
+    /// Zero.
+    pub padding: [f32; 3],
 }
 
 /// `Frame`, shaders/shared/records.wgsl.
@@ -136,20 +134,24 @@ pub struct ShadeRecord {
     pub tube: [f32; 3],
     /// One of the `PATTERN_` constants of [`shader`](super::shader).
     pub pattern: u32,
-    /// Linear RGB of the background at the top of the picture.
+    /// Linear RGB of the surroundings above.
     pub top: [f32; 3],
-    /// First row of the tile in the picture, in samples.
-    pub row: f32,
-    /// Linear RGB of the background at the bottom.
+    /// Zero.
+    pub padding0: f32,
+    /// Linear RGB of the surroundings below.
     pub bottom: [f32; 3],
-    /// Rows of the picture, in samples.
-    pub rows: f32,
+    /// Zero.
+    pub padding1: f32,
     /// Unit vector up, world space.
     pub up: [f32; 3],
     /// Zero.
-    pub padding0: f32,
+    pub padding2: f32,
+    /// Unit vector to the key light, world space.
+    pub key: [f32; 3],
+    /// Zero.
+    pub padding3: f32,
     /// From plane coordinates to texture coordinates.
     pub picture_scale: [f32; 2],
     /// Zero.
-    pub padding1: [f32; 2],
+    pub padding4: [f32; 2],
 }

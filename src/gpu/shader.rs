@@ -51,7 +51,7 @@ const RECORDS: &str = include_str!("../../shaders/shared/records.wgsl");
 const LIMIT_POINT: &str = include_str!("../../shaders/shared/limit_point.wgsl");
 const FULLSCREEN: &str = include_str!("../../shaders/shared/fullscreen.wgsl");
 const SURFACE: &str = include_str!("../../shaders/shared/surface.wgsl");
-const BAND: &str = include_str!("../../shaders/shared/band.wgsl");
+const OCTAHEDRAL: &str = include_str!("../../shaders/shared/octahedral.wgsl");
 const PATTERN: &str = include_str!("../../shaders/shared/pattern.wgsl");
 const REFLECTION: &str = include_str!("../../shaders/field/reflection.wgsl");
 
@@ -61,16 +61,26 @@ pub const VISIBILITY: Module =
 /// Exact surface per pixel.
 pub const LIMIT: Module = Module {
     name: "limit",
-    files: &[RECORDS, LIMIT_POINT, REFLECTION, BAND, SURFACE, FULLSCREEN, include_str!("../../shaders/limit.wgsl")],
+    files: &[
+        RECORDS,
+        LIMIT_POINT,
+        REFLECTION,
+        OCTAHEDRAL,
+        SURFACE,
+        FULLSCREEN,
+        include_str!("../../shaders/limit.wgsl"),
+    ],
 };
 /// Interpolated surface per pixel.
 pub const POLYGON: Module = Module {
     name: "polygon",
-    files: &[RECORDS, REFLECTION, BAND, SURFACE, FULLSCREEN, include_str!("../../shaders/polygon.wgsl")],
+    files: &[RECORDS, REFLECTION, OCTAHEDRAL, SURFACE, FULLSCREEN, include_str!("../../shaders/polygon.wgsl")],
 };
 /// Colour.
-pub const SHADE: Module =
-    Module { name: "shade", files: &[REFLECTION, BAND, PATTERN, FULLSCREEN, include_str!("../../shaders/shade.wgsl")] };
+pub const SHADE: Module = Module {
+    name: "shade",
+    files: &[REFLECTION, OCTAHEDRAL, PATTERN, FULLSCREEN, include_str!("../../shaders/shade.wgsl")],
+};
 /// Linear sum to sRGB.
 pub const RESOLVE: Module =
     Module { name: "resolve", files: &[FULLSCREEN, include_str!("../../shaders/resolve.wgsl")] };

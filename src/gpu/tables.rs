@@ -144,6 +144,11 @@ impl Tables {
         self.origins[patch]
     }
 
+    /// Area of the patches in ptex faces.
+    pub fn faces(&self) -> f64 {
+        self.cells.iter().map(|&(depth, _)| 0.25f64.powi(i32::from(depth))).sum()
+    }
+
     /// Box round the surface.
     pub fn bounds(&self) -> [DVec3; 2] {
         self.bounds

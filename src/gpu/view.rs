@@ -1,12 +1,11 @@
 //! What to draw, and its f64-composed records for the shaders.
 
-use super::records::{FrameRecord, LightRecord, ShadeRecord};
+use super::records::{FrameRecord, LightRecord, ResolveRecord, ShadeRecord};
 use super::shader::{PATTERN_CIRCLES, PATTERN_LATTICE, PATTERN_PICTURE, PATTERN_STRIPES};
 use super::{GpuError, Tables};
 use crate::field::{Camera, Field, Light, Pattern};
 use glam::DVec3;
 use rayon::prelude::*;
-use std::ops::Range;
 
 /// Highest level of the proxy tessellation: 256 parts a face.
 pub const MAX_PROXY_LEVEL: u32 = 8;
@@ -42,7 +41,7 @@ impl Default for Palette {
     /// Dark blue-grey paint and slightly warm white tubes before a light neutral background.
     fn default() -> Self {
         Palette {
-            paint: [0.020, 0.026, 0.036],
+            paint: [0.028, 0.040, 0.060],
             tube: [0.955, 0.945, 0.920],
             top: [0.830, 0.840, 0.850],
             bottom: [0.560, 0.575, 0.590],
@@ -61,8 +60,9 @@ pub struct View {
     pub pattern: Pattern,
     /// How position and normal come to a pixel.
     pub pipeline: Pipeline,
-    /// Level of the proxy tessellation, 0 to [`MAX_PROXY_LEVEL`]: 2^level parts a ptex face.
-    pub proxy_level: u32,
+    /// Level of the proxy tessellation, 0 to [`MAX_PROXY_LEVEL`]: 2^level parts a ptex face. `None`: as fine as the picture
+    /// asks for ([`View::proxy_level_for`]).
+    pub proxy_level: Option<u32>,
     /// Samples a pixel each way, 1 to [`MAX_SAMPLES`].
     pub samples: u32,
     /// Colours.
@@ -77,7 +77,7 @@ impl View {
             field: Field::Reflection(light),
             pattern: Pattern::Stripes { width: 0.42 },
             pipeline: Pipeline::Limit,
-            proxy_level: 4,
+            proxy_level: None,
             samples: 2,
             palette: Palette::default(),
         }
@@ -105,8 +105,8 @@ impl View {
         if !(fov > 0.0 && fov < 180.0) {
             return fail(format!("field of view {fov}: must be between 0 and 180 degrees"));
         }
-        if self.proxy_level > MAX_PROXY_LEVEL {
-            return fail(format!("proxy level {}: must be 0 to {MAX_PROXY_LEVEL}", self.proxy_level));
+        if let Some(level) = self.proxy_level.filter(|&level| level > MAX_PROXY_LEVEL) {
+            return fail(format!("proxy level {level}: must be 0 to {MAX_PROXY_LEVEL}"));
         }
         if !(1..=MAX_SAMPLES).contains(&self.samples) {
             return fail(format!("{} samples: must be 1 to {MAX_SAMPLES}", self.samples));
@@ -124,6 +124,18 @@ impl View {
             }
             _ => Ok(()),
         }
+    }
+
+    /// The level of the proxy: as asked, or such that a face of average size has cells of at most 4 pixels. An edge of
+    /// that length on a silhouette with a radius of 20 pixels is 4^2 / (8 20) = 0.1 pixel off the curve.
+    pub fn proxy_level_for(&self, tables: &Tables) -> u32 {
+        const CELL: f64 = 4.0;
+        self.proxy_level.unwrap_or_else(|| {
+            let pixels: f64 = self.camera.size.map(f64::from).iter().product();
+            // Half of the picture, seen half from the front and half from the back.
+            let face = (pixels / tables.faces().max(1.0)).sqrt();
+            (face / CELL).log2().ceil().clamp(1.0, 7.0) as u32
+        })
     }
 
     /// Every patch as this camera sees it, composed in f64, then rounded (design.md 4, "Projection"): clip-space x, y, w of
@@ -154,7 +166,7 @@ impl View {
             clip_y: row(axes.up * axes.scale[1]),
             focal: (axes.scale[1] * h * 0.5) as f32,
             clip_w: row(axes.forward),
-            proxy_level: self.proxy_level,
+            proxy_level: self.proxy_level_for(tables),
             scale: [(w / tw) as f32, (h / th) as f32],
             shift: [(w / tw - 2.0 * x / tw - 1.0) as f32, (1.0 - h / th + 2.0 * y / th) as f32],
             size: [tw as f32, th as f32],
@@ -180,7 +192,7 @@ impl View {
     }
 
     /// Colours and pattern.
-    pub(super) fn shade_record(&self, tables: &Tables, tile: &Tile) -> ShadeRecord {
+    pub(super) fn shade_record(&self, tables: &Tables) -> ShadeRecord {
         let (pattern, width) = match &self.pattern {
             Pattern::Stripes { width } => (PATTERN_STRIPES, *width),
             Pattern::Lattice { width } => (PATTERN_LATTICE, *width),
@@ -188,19 +200,36 @@ impl View {
             Pattern::Picture(_) => (PATTERN_PICTURE, 0.0),
         };
         let Palette { paint, tube, top, bottom } = self.palette;
+        let axes = self.camera.axes();
+        // Over the photographer's left shoulder.
+        let key = (axes.up * 0.75 - axes.right * 0.45 - axes.forward * 0.5).normalize();
         ShadeRecord {
             paint,
             width: width as f32,
             tube,
             pattern,
             top,
-            row: tile.origin[1] as f32,
-            bottom,
-            rows: (self.camera.size[1] * tile.samples) as f32,
-            up: self.camera.up.normalize_or_zero().as_vec3().to_array(),
             padding0: 0.0,
+            bottom,
+            padding1: 0.0,
+            up: self.camera.up.normalize_or_zero().as_vec3().to_array(),
+            padding2: 0.0,
+            key: key.as_vec3().to_array(),
+            padding3: 0.0,
             picture_scale: (self.pattern.picture_scale(self.light()) * tables.unit()).as_vec2().to_array(),
-            padding1: [0.0; 2],
+            padding4: [0.0; 2],
+        }
+    }
+
+    /// Background of a tile.
+    pub(super) fn resolve_record(&self, tile: &Tile) -> ResolveRecord {
+        ResolveRecord {
+            top: self.palette.top,
+            samples: tile.samples as i32,
+            bottom: self.palette.bottom,
+            row: tile.pixels()[0][1] as f32,
+            rows: self.camera.size[1] as f32,
+            padding: [0.0; 3],
         }
     }
 }
@@ -217,15 +246,15 @@ pub(super) struct Tile {
 }
 
 impl Tile {
-    /// Largest side in samples: with [`Self::BAND`] it bounds the memory of the intermediate textures to about 170 MiB,
-    /// whatever the size of the picture.
-    const SIDE: u32 = 2048;
-    /// Samples of a tile whose surface (48 bytes each) exists at a time.
-    const BAND: u32 = 1 << 20;
+    /// Largest side for pictures: with 44 bytes a sample the intermediate textures take 176 MiB, whatever the picture's
+    /// size.
+    pub const PICTURE_SIDE: u32 = 2048;
+    /// Largest side for surface images, which take 64 bytes a sample and as much again while they are read back.
+    pub const SURFACE_SIDE: u32 = 1024;
 
     /// Tiles of a picture of `size` pixels.
-    pub fn cover(size: [u32; 2], samples: u32) -> Vec<Tile> {
-        let side = Self::SIDE / samples * samples;
+    pub fn cover(size: [u32; 2], samples: u32, side: u32) -> Vec<Tile> {
+        let side = side / samples * samples;
         let total = size.map(|n| n * samples);
         let starts = |n: u32| (0..n).step_by(side as usize);
         let tile = |x: u32, y: u32| Tile {
@@ -234,17 +263,6 @@ impl Tile {
             samples,
         };
         starts(total[1]).flat_map(|y| starts(total[0]).map(move |x| tile(x, y))).collect()
-    }
-
-    /// Rows of a band of this tile.
-    pub fn band_rows(&self) -> u32 {
-        (Self::BAND / self.size[0]).clamp(1, self.size[1])
-    }
-
-    /// Row ranges that cover the tile.
-    pub fn bands(&self) -> impl Iterator<Item = Range<u32>> + use<> {
-        let (rows, all) = (self.band_rows(), self.size[1]);
-        (0..all).step_by(rows as usize).map(move |y| y..(y + rows).min(all))
     }
 
     /// First pixel and size in pixels.

@@ -1,45 +1,66 @@
 //! `shaders/limit.wgsl` and `shaders/polygon.wgsl`: position, normal and field of every pixel.
 
-use super::{
-    Band, CLEAR, Passes, SURFACE_FORMAT, Scene, Targets, attachment, bind, draw_fullscreen, fullscreen, whole,
-};
+use super::{PACKED_FORMAT, Passes, SURFACE_FORMAT, Scene, SurfaceTargets, Visible};
+use super::{bind, draw_fullscreen, fullscreen, whole};
 use crate::gpu::device::Device;
 use crate::gpu::shader::{LIMIT, POLYGON};
 use crate::gpu::{GpuError, Pipeline};
 use wgpu::BindingResource::TextureView;
 
 pub fn pipeline<'a>(passes: &'a Passes, device: &Device, pipeline: Pipeline) -> &'a wgpu::RenderPipeline {
-    let targets = [const {
-        Some(wgpu::ColorTargetState { format: SURFACE_FORMAT, blend: None, write_mask: wgpu::ColorWrites::ALL })
-    }; 3];
+    let formats = [PACKED_FORMAT];
     match pipeline {
-        Pipeline::Limit => passes.limit.get_or_init(|| fullscreen(device, &LIMIT, "limit", &targets)),
-        Pipeline::Polygon => passes.polygon.get_or_init(|| fullscreen(device, &POLYGON, "polygon", &targets)),
+        Pipeline::Limit => passes.limit.get_or_init(|| fullscreen(device, &LIMIT, "limit", &formats, true)),
+        Pipeline::Polygon => passes.polygon.get_or_init(|| fullscreen(device, &POLYGON, "polygon", &formats, true)),
     }
 }
 
+fn pipeline_full<'a>(passes: &'a Passes, device: &Device, pipeline: Pipeline) -> &'a wgpu::RenderPipeline {
+    let create = |module, entry| fullscreen(device, module, entry, &[SURFACE_FORMAT; 3], true);
+    match pipeline {
+        Pipeline::Limit => passes.limit_full.get_or_init(|| create(&LIMIT, "limit_full")),
+        Pipeline::Polygon => passes.polygon_full.get_or_init(|| create(&POLYGON, "polygon_full")),
+    }
+}
+
+/// Writes what shading needs, packed.
 pub fn run(
     device: &Device,
     passes: &Passes,
     scene: &Scene<'_>,
-    targets: &Targets,
-    band: &Band,
+    visible: &Visible,
+    surface: &wgpu::Texture,
 ) -> Result<(), GpuError> {
-    let pipeline = pipeline(passes, device, scene.view.pipeline);
+    draw(device, pipeline(passes, device, scene.view.pipeline), scene, visible, &[surface])
+}
+
+/// Writes everything in f32.
+pub fn run_full(
+    device: &Device,
+    passes: &Passes,
+    scene: &Scene<'_>,
+    visible: &Visible,
+    surface: &SurfaceTargets,
+) -> Result<(), GpuError> {
+    let targets = [&surface.position, &surface.normal, &surface.field];
+    draw(device, pipeline_full(passes, device, scene.view.pipeline), scene, visible, &targets)
+}
+
+fn draw(
+    device: &Device,
+    pipeline: &wgpu::RenderPipeline,
+    scene: &Scene<'_>,
+    visible: &Visible,
+    targets: &[&wgpu::Texture],
+) -> Result<(), GpuError> {
     let [records, points, scales, patch_views] = scene.table_views();
-    let mut resources = vec![
-        (3, TextureView(&patch_views)),
-        (4, scene.light.as_entire_binding()),
-        (5, band.record.as_entire_binding()),
-    ];
-    let patch = whole(&targets.patch);
-    let inputs: Vec<_> = match &targets.proxy {
+    let mut resources = vec![(3, TextureView(&patch_views)), (4, scene.light.as_entire_binding())];
+    let patch = whole(&visible.patch);
+    let inputs: Vec<_> = match &visible.proxy {
         Some(proxy) => proxy.iter().map(whole).collect(),
         None => {
-            resources.push((0, TextureView(&records)));
-            resources.push((1, TextureView(&points)));
-            resources.push((2, TextureView(&scales)));
-            vec![whole(&targets.uv)]
+            resources.extend([(0, TextureView(&records)), (1, TextureView(&points)), (2, TextureView(&scales))]);
+            vec![whole(&visible.uv)]
         }
     };
     let textures: Vec<_> =
@@ -48,7 +69,5 @@ pub fn run(
         bind(device, pipeline.get_bind_group_layout(0), &resources),
         bind(device, pipeline.get_bind_group_layout(1), &textures),
     ];
-    let views = [&targets.position, &targets.normal, &targets.field].map(whole);
-    let attachments: Vec<_> = views.iter().map(|view| attachment(view, CLEAR)).collect();
-    draw_fullscreen(device, pipeline, &groups, &attachments, None)
+    draw_fullscreen(device, pipeline, &groups, targets, Some(&visible.depth))
 }

@@ -8,11 +8,9 @@ pub mod visibility;
 
 use super::device::Device;
 use super::proxy::Proxy;
-use super::records::BandRecord;
 use super::shader::Module;
 use super::view::Tile;
 use super::{GpuError, Pipeline, Tables, View};
-use std::ops::Range;
 use std::sync::OnceLock;
 use wgpu::{BufferUsages, TextureFormat, TextureUsages};
 
@@ -22,7 +20,9 @@ pub struct Passes {
     visibility: OnceLock<wgpu::RenderPipeline>,
     visibility_polygon: OnceLock<wgpu::RenderPipeline>,
     limit: OnceLock<wgpu::RenderPipeline>,
+    limit_full: OnceLock<wgpu::RenderPipeline>,
     polygon: OnceLock<wgpu::RenderPipeline>,
+    polygon_full: OnceLock<wgpu::RenderPipeline>,
     shade: OnceLock<wgpu::RenderPipeline>,
     resolve: OnceLock<wgpu::RenderPipeline>,
     evaluate: OnceLock<wgpu::ComputePipeline>,
@@ -54,7 +54,7 @@ pub(super) struct Scene<'a> {
 
 impl<'a> Scene<'a> {
     pub fn new(device: &Device, tables: &'a Tables, view: &'a View) -> Result<Self, GpuError> {
-        let proxy = Proxy::new(&tables.cells, view.proxy_level);
+        let proxy = Proxy::new(&tables.cells, view.proxy_level_for(tables));
         Ok(Scene {
             tables,
             view,
@@ -77,33 +77,30 @@ impl Scene<'_> {
     }
 }
 
-/// Rows of a tile whose surface exists at a time.
-pub(super) struct Band {
-    pub rows: Range<u32>,
-    record: wgpu::Buffer,
-}
-
-impl Band {
-    pub fn new(device: &Device, tile: &Tile, rows: Range<u32>) -> Result<Band, GpuError> {
-        // One row more on each side, for the field's derivative.
-        let record = BandRecord { first: rows.start as i32 - 1, rows: tile.size[1] as i32, padding: [0; 2] };
-        Ok(Band { rows, record: device.buffer("the band", &[record], BufferUsages::UNIFORM)? })
-    }
-}
-
-/// The textures between the passes, for one tile.
-pub(super) struct Targets {
+/// What the visibility pass writes.
+pub(super) struct Visible {
     /// Patch id + 1.
     pub patch: wgpu::Texture,
     pub uv: wgpu::Texture,
-    pub depth: wgpu::Texture,
+    /// Above 0 where there is surface: the mask of the passes that follow.
+    depth: wgpu::Texture,
     /// Position and normal of the proxy, for the polygon pipeline.
-    pub proxy: Option<[wgpu::Texture; 2]>,
+    proxy: Option<[wgpu::Texture; 2]>,
+}
+
+/// What the limit pass writes when all of it is read back.
+pub(super) struct SurfaceTargets {
     pub position: wgpu::Texture,
     pub normal: wgpu::Texture,
     pub field: wgpu::Texture,
-    /// Shaded samples, linear.
-    pub samples: wgpu::Texture,
+}
+
+/// What the passes of a picture write.
+pub(super) struct PictureTargets {
+    /// Field value, normal and angles, packed.
+    pub surface: wgpu::Texture,
+    /// Shaded samples, linear, with coverage in alpha.
+    samples: wgpu::Texture,
     pub colour: wgpu::Texture,
 }
 
@@ -111,35 +108,48 @@ const PATCH_FORMAT: TextureFormat = TextureFormat::R32Uint;
 const UV_FORMAT: TextureFormat = TextureFormat::Rg32Float;
 const DEPTH_FORMAT: TextureFormat = TextureFormat::Depth32Float;
 const SURFACE_FORMAT: TextureFormat = TextureFormat::Rgba32Float;
+const PACKED_FORMAT: TextureFormat = TextureFormat::Rgba32Uint;
 const SAMPLE_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
 const COLOUR_FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
 
-impl Targets {
-    pub fn new(device: &Device, tile: &Tile, pipeline: Pipeline) -> Targets {
-        let texture = |size: [u32; 2], format| {
-            device.device.create_texture(&wgpu::TextureDescriptor {
-                label: None,
-                size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC,
-                view_formats: &[],
-            })
-        };
-        let size = tile.size;
-        let band = [size[0], tile.band_rows() + 2];
-        Targets {
-            patch: texture(size, PATCH_FORMAT),
-            uv: texture(size, UV_FORMAT),
-            depth: texture(size, DEPTH_FORMAT),
-            proxy: (pipeline == Pipeline::Polygon).then(|| [SURFACE_FORMAT; 2].map(|format| texture(size, format))),
-            position: texture(band, SURFACE_FORMAT),
-            normal: texture(band, SURFACE_FORMAT),
-            field: texture(band, SURFACE_FORMAT),
-            samples: texture(size, SAMPLE_FORMAT),
-            colour: texture(tile.pixels()[1], COLOUR_FORMAT),
+fn target(device: &Device, size: [u32; 2], format: TextureFormat) -> wgpu::Texture {
+    device.device.create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC,
+        view_formats: &[],
+    })
+}
+
+impl Visible {
+    pub fn new(device: &Device, tile: &Tile, pipeline: Pipeline) -> Visible {
+        let texture = |format| target(device, tile.size, format);
+        Visible {
+            patch: texture(PATCH_FORMAT),
+            uv: texture(UV_FORMAT),
+            depth: texture(DEPTH_FORMAT),
+            proxy: (pipeline == Pipeline::Polygon).then(|| [SURFACE_FORMAT; 2].map(texture)),
+        }
+    }
+}
+
+impl SurfaceTargets {
+    pub fn new(device: &Device, tile: &Tile) -> SurfaceTargets {
+        let texture = || target(device, tile.size, SURFACE_FORMAT);
+        SurfaceTargets { position: texture(), normal: texture(), field: texture() }
+    }
+}
+
+impl PictureTargets {
+    pub fn new(device: &Device, tile: &Tile) -> PictureTargets {
+        PictureTargets {
+            surface: target(device, tile.size, PACKED_FORMAT),
+            samples: target(device, tile.size, SAMPLE_FORMAT),
+            colour: target(device, tile.pixels()[1], COLOUR_FORMAT),
         }
     }
 }
@@ -151,13 +161,24 @@ fn shader(device: &Device, module: &Module) -> wgpu::ShaderModule {
     })
 }
 
-/// A pipeline that draws one triangle over the target.
+/// A pipeline that draws one triangle over the targets; `masked`: where the depth buffer of [`Visible`] has surface. (A
+/// branch on coverage in the shader would save nothing on software adapters: they compute both sides.)
 fn fullscreen(
     device: &Device,
     module: &Module,
     entry: &str,
-    targets: &[Option<wgpu::ColorTargetState>],
+    formats: &[TextureFormat],
+    masked: bool,
 ) -> wgpu::RenderPipeline {
+    let targets: Vec<_> = formats.iter().map(|&format| Some(format.into())).collect();
+    // The triangle lies at depth 0, the value of the background; surface is greater.
+    let mask = wgpu::DepthStencilState {
+        format: DEPTH_FORMAT,
+        depth_write_enabled: Some(false),
+        depth_compare: Some(wgpu::CompareFunction::Less),
+        stencil: Default::default(),
+        bias: Default::default(),
+    };
     let shader = shader(device, module);
     device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(module.name),
@@ -169,13 +190,13 @@ fn fullscreen(
             buffers: &[],
         },
         primitive: Default::default(),
-        depth_stencil: None,
+        depth_stencil: masked.then_some(mask),
         multisample: Default::default(),
         fragment: Some(wgpu::FragmentState {
             module: &shader,
             entry_point: Some(entry),
             compilation_options: Default::default(),
-            targets,
+            targets: &targets,
         }),
         multiview_mask: None,
         cache: None,
@@ -199,10 +220,9 @@ fn whole(texture: &wgpu::Texture) -> wgpu::TextureView {
     texture.create_view(&Default::default())
 }
 
-fn attachment(
-    view: &wgpu::TextureView,
-    load: wgpu::LoadOp<wgpu::Color>,
-) -> Option<wgpu::RenderPassColorAttachment<'_>> {
+/// A colour attachment that starts as zeros.
+fn cleared(view: &wgpu::TextureView) -> Option<wgpu::RenderPassColorAttachment<'_>> {
+    let load = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
     Some(wgpu::RenderPassColorAttachment {
         view,
         depth_slice: None,
@@ -211,25 +231,31 @@ fn attachment(
     })
 }
 
-const CLEAR: wgpu::LoadOp<wgpu::Color> = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
-
-/// Draws one triangle over the attachments, or the part of them that starts at scissor x, y, width w, height h.
+/// Draws one triangle over the targets, cleared to zero; `mask`: where this depth buffer has surface.
 fn draw_fullscreen(
     device: &Device,
     pipeline: &wgpu::RenderPipeline,
     groups: &[wgpu::BindGroup],
-    attachments: &[Option<wgpu::RenderPassColorAttachment<'_>>],
-    scissor: Option<[u32; 4]>,
+    targets: &[&wgpu::Texture],
+    mask: Option<&wgpu::Texture>,
 ) -> Result<(), GpuError> {
+    let views: Vec<_> = targets.iter().map(|texture| whole(texture)).collect();
+    let attachments: Vec<_> = views.iter().map(cleared).collect();
+    let mask = mask.map(whole);
     let mut encoder = device.encoder();
-    let mut pass =
-        encoder.begin_render_pass(&wgpu::RenderPassDescriptor { color_attachments: attachments, ..Default::default() });
+    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        color_attachments: &attachments,
+        // Without operations the depth buffer is read-only.
+        depth_stencil_attachment: mask.as_ref().map(|view| wgpu::RenderPassDepthStencilAttachment {
+            view,
+            depth_ops: None,
+            stencil_ops: None,
+        }),
+        ..Default::default()
+    });
     pass.set_pipeline(pipeline);
     for (index, group) in groups.iter().enumerate() {
         pass.set_bind_group(index as u32, group, &[]);
-    }
-    if let Some([x, y, width, height]) = scissor {
-        pass.set_scissor_rect(x, y, width, height);
     }
     pass.draw(0..3, 0..1);
     drop(pass);

@@ -1,9 +1,8 @@
 //! `shaders/shade.wgsl`: field and pattern into colour.
 
-use super::{Band, CLEAR, Passes, SAMPLE_FORMAT, Scene, Targets, attachment, bind, draw_fullscreen, fullscreen, whole};
+use super::{Passes, PictureTargets, SAMPLE_FORMAT, Scene, Visible, bind, draw_fullscreen, fullscreen, whole};
 use crate::field::{Pattern, Picture};
 use crate::gpu::device::Device;
-use crate::gpu::view::Tile;
 use crate::gpu::{GpuError, View, shader::SHADE};
 use wgpu::BindingResource::{Sampler, TextureView};
 
@@ -78,37 +77,30 @@ fn mip_levels(picture: &Picture) -> Vec<Picture> {
 }
 
 pub fn pipeline<'a>(passes: &'a Passes, device: &Device) -> &'a wgpu::RenderPipeline {
-    passes.shade.get_or_init(|| fullscreen(device, &SHADE, "shade", &[Some(SAMPLE_FORMAT.into())]))
+    passes.shade.get_or_init(|| fullscreen(device, &SHADE, "shade", &[SAMPLE_FORMAT], true))
 }
 
-/// Shades the rows of a band.
 pub fn run(
     device: &Device,
     passes: &Passes,
     scene: &Scene<'_>,
-    targets: &Targets,
-    tile: &Tile,
-    band: &Band,
+    visible: &Visible,
+    picture: &PictureTargets,
 ) -> Result<(), GpuError> {
     let pipeline = pipeline(passes, device);
-    let record = scene.view.shade_record(scene.tables, tile);
+    let record = scene.view.shade_record(scene.tables);
     let record = device.buffer("the colours", &[record], wgpu::BufferUsages::UNIFORM)?;
-    let [position, normal, field] = [&targets.position, &targets.normal, &targets.field].map(whole);
+    let surface = whole(&picture.surface);
     let group = bind(
         device,
         pipeline.get_bind_group_layout(0),
         &[
-            (0, TextureView(&position)),
-            (1, TextureView(&normal)),
-            (2, TextureView(&field)),
-            (3, TextureView(&scene.picture.view)),
-            (4, Sampler(&scene.picture.sampler)),
-            (5, record.as_entire_binding()),
-            (6, scene.light.as_entire_binding()),
-            (7, band.record.as_entire_binding()),
+            (0, TextureView(&surface)),
+            (1, TextureView(&scene.picture.view)),
+            (2, Sampler(&scene.picture.sampler)),
+            (3, record.as_entire_binding()),
+            (4, scene.light.as_entire_binding()),
         ],
     );
-    let scissor = [0, band.rows.start, tile.size[0], band.rows.len() as u32];
-    let load = if band.rows.start == 0 { CLEAR } else { wgpu::LoadOp::Load };
-    draw_fullscreen(device, pipeline, &[group], &[attachment(&whole(&targets.samples), load)], Some(scissor))
+    draw_fullscreen(device, pipeline, &[group], &[&picture.samples], Some(&visible.depth))
 }

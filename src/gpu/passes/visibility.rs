@@ -1,7 +1,7 @@
 //! `shaders/visibility.wgsl`: which patch, at which (u,v), each pixel sees.
 
-use super::{CLEAR, DEPTH_FORMAT, PATCH_FORMAT, Passes, SURFACE_FORMAT, Scene, Targets, UV_FORMAT};
-use super::{attachment, bind, shader, whole};
+use super::{DEPTH_FORMAT, PATCH_FORMAT, Passes, SURFACE_FORMAT, Scene, UV_FORMAT, Visible};
+use super::{bind, cleared, shader, whole};
 use crate::gpu::device::Device;
 use crate::gpu::proxy::{Draw, Proxy};
 use crate::gpu::records::{DrawRecord, ProxyVertex};
@@ -84,7 +84,7 @@ pub fn run(
     device: &Device,
     passes: &Passes,
     scene: &Scene<'_>,
-    targets: &Targets,
+    visible: &Visible,
     tile: &Tile,
 ) -> Result<(), GpuError> {
     let pipeline = pipeline(passes, device, scene.view.pipeline);
@@ -110,15 +110,15 @@ pub fn run(
         .map(|(_, record)| bind(device, pipeline.get_bind_group_layout(1), &[(0, record.as_entire_binding())]))
         .collect();
     let views: Vec<_> =
-        [&targets.patch, &targets.uv].into_iter().chain(targets.proxy.iter().flatten()).map(whole).collect();
-    let attachments: Vec<_> = views.iter().map(|view| attachment(view, CLEAR)).collect();
-    let depth = whole(&targets.depth);
+        [&visible.patch, &visible.uv].into_iter().chain(visible.proxy.iter().flatten()).map(whole).collect();
+    let attachments: Vec<_> = views.iter().map(cleared).collect();
+    let depth = whole(&visible.depth);
     let mut encoder = device.encoder();
     let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         color_attachments: &attachments,
         depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
             view: &depth,
-            depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard }),
+            depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store }),
             stencil_ops: None,
         }),
         ..Default::default()
