@@ -7,6 +7,8 @@ use glam::DVec3;
 /// A surface as the automatic fit sees it: scattered limit points with normals.
 #[derive(Debug, Clone)]
 pub struct Scout {
+    /// Corners and points of the ptex faces.
+    outline: Vec<DVec3>,
     points: Vec<DVec3>,
     normals: Vec<DVec3>,
     /// Area that each point stands for.
@@ -16,7 +18,7 @@ pub struct Scout {
 
 /// Points looked at, about.
 const BUDGET: usize = 40_000;
-/// Points a ptex face, each way; corners included, where the silhouette of most faces is.
+/// Points a ptex face, each way; inside it, because derivatives may be infinite at its corners.
 const GRID: usize = 3;
 
 impl Scout {
@@ -24,24 +26,28 @@ impl Scout {
     pub fn new(surface: &LimitSurface) -> Option<Scout> {
         let bounds = surface.bounds()?;
         let stride = (surface.ptex_count() * GRID * GRID).div_ceil(BUDGET).max(1);
-        let mut scout = Scout { points: Vec::new(), normals: Vec::new(), areas: Vec::new(), bounds };
+        let (mut outline, mut points, mut normals, mut areas) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         for ptex in (0..surface.ptex_count() as u32).step_by(stride) {
+            let at = |u: f64, v: f64| surface.evaluate_ptex(ptex, [u, v]).map(|(_, jet)| jet);
             for k in 0..GRID * GRID {
-                let uv = [k % GRID, k / GRID].map(|i| i as f64 / (GRID - 1) as f64);
-                if let Some((_, jet)) = surface.evaluate_ptex(ptex, uv) {
-                    scout.points.push(jet.position);
-                    scout.normals.push(jet.normal);
-                    scout.areas.push(jet.du.cross(jet.dv).length());
+                let [u, v] = [k % GRID, k / GRID].map(|i| (i as f64 + 0.5) / GRID as f64);
+                if let Some(jet) = at(u, v) {
+                    points.push(jet.position);
+                    normals.push(jet.normal);
+                    areas.push(jet.du.cross(jet.dv).length());
                 }
             }
+            let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
+            outline.extend(corners.iter().filter_map(|&(u, v)| at(u, v)).map(|jet| jet.position));
         }
-        Some(scout)
+        outline.extend(&points);
+        Some(Scout { outline, points, normals, areas, bounds })
     }
 
     /// A camera that sees all of the surface from `direction` (from the object to the eye), vertical field of view `fov`
     /// in degrees.
     pub fn camera_from(&self, size: [u32; 2], up: DVec3, direction: DVec3, fov: f64) -> Camera {
-        Camera::fit(&self.points, size, up, direction, fov)
+        Camera::fit(&self.outline, size, up, direction, fov)
     }
 
     /// The three-quarter view.
