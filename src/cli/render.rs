@@ -2,7 +2,7 @@
 
 use super::args::{size, vector};
 use super::{Failure, load, progress};
-use crate::field::{Camera, DEFAULT_FOV, Light, Pattern, Picture};
+use crate::field::{DEFAULT_FOV, Light, Pattern, Picture, Scout};
 use crate::gpu::{Gpu, MAX_PROXY_LEVEL, MAX_SAMPLES, Pipeline, View};
 use crate::output::{check_folder, write_png};
 use crate::stam::LimitSurface;
@@ -122,13 +122,13 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let bar = progress("drawing".to_owned());
     let mesh = clock.time("read", || load(args.mesh.as_deref()))?;
     let surface = clock.time("patches and classes", || LimitSurface::new(&mesh)).map_err(|e| Failure::of(&mesh, e))?;
-    let bounds = surface.bounds().ok_or_else(|| {
+    let scout = clock.time("fit", || Scout::new(&surface)).ok_or_else(|| {
         Failure::Bad(format!(
             "{}: no face has a limit surface (holes, or boundary rule none); nothing to draw",
             mesh.name
         ))
     })?;
-    let view = view(args, bounds, pattern);
+    let view = view(args, &scout, pattern);
     let gpu = clock.time("adapter", Gpu::new)?;
     let tables = clock.time("tables", || gpu.upload(&surface))?;
     let frame = gpu.render(&tables, &view)?;
@@ -144,33 +144,29 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Camera and light that show the built-in sample best: the fender in three-quarter view, mirroring a wall of tubes
-/// behind and beside the car, whose lines run over shoulder, feature line and wheel arch.
-fn sample_rig(bounds: [DVec3; 2], size: [u32; 2]) -> (Camera, Light) {
-    let direction = DVec3::new(-1.90, 2.10, 0.81);
-    let camera = Camera::fit_from(bounds, size, DVec3::Z, direction, DEFAULT_FOV);
+/// Direction of sight and light that show the built-in sample best: the fender in three-quarter view, mirroring a wall of
+/// tubes behind and beside the car, whose lines run over shoulder, feature line and wheel arch.
+fn sample_rig() -> (DVec3, Light) {
     let [center, facing, lines] = [[3.6, 2.7, 1.5], [-0.72, -0.63, -0.28], [0.38, -0.55, 0.60]].map(DVec3::from_array);
-    (camera, Light::new(center, facing, lines, 1.0))
+    (DVec3::new(-1.90, 2.10, 0.81), Light::new(center, facing, lines, 1.0))
 }
 
-/// Camera and light for any other mesh.
-fn fitted_rig(bounds: [DVec3; 2], size: [u32; 2], up: DVec3) -> (Camera, Light) {
-    let camera = Camera::fit(bounds, size, up);
-    (camera, Light::fit(bounds, camera.eye, up))
-}
-
-fn view(args: &RenderArgs, bounds: [DVec3; 2], pattern: Pattern) -> View {
-    let (mut camera, mut light) = match (&args.mesh, args.up) {
-        (None, None) => sample_rig(bounds, args.size),
-        _ => fitted_rig(bounds, args.size, args.up.unwrap_or(DVec3::Z)),
+fn view(args: &RenderArgs, scout: &Scout, pattern: Pattern) -> View {
+    let up = args.up.unwrap_or(DVec3::Z);
+    let sample = (args.mesh.is_none() && args.up.is_none()).then(sample_rig);
+    let mut camera = match sample {
+        Some((direction, _)) => scout.camera_from(args.size, up, direction, args.fov),
+        None => {
+            let default = scout.camera(args.size, up);
+            scout.camera_from(args.size, up, default.eye - default.target, args.fov)
+        }
     };
-    let (middle, direction) = (camera.target, camera.eye - camera.target);
-    camera = Camera::fit_from(bounds, args.size, camera.up, direction, args.fov);
     if let Some(target) = args.target {
-        camera.eye += target - middle;
+        camera.eye += target - camera.target;
         camera.target = target;
     }
     camera.eye = args.eye.unwrap_or(camera.eye);
+    let mut light = sample.map_or_else(|| scout.light(camera.eye, up), |(_, light)| light);
 
     let given = [args.light_center, args.light_normal, args.light_lines];
     if given.iter().any(Option::is_some) {

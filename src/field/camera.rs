@@ -5,6 +5,9 @@ use glam::{DVec3, dvec3};
 /// Vertical field of view of a fitted camera, in degrees: a short telephoto lens, as product photographers use.
 pub const DEFAULT_FOV: f64 = 26.0;
 
+/// Part of the picture's half width and half height that a fitted object fills.
+pub const FILL: f64 = 0.92;
+
 /// Where the picture is taken from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
@@ -34,38 +37,43 @@ pub struct Axes {
 }
 
 impl Camera {
-    /// The three-quarter view: from the front left and above, so far away that the box `bounds` fits into the picture.
-    /// `up` is the vertical of the model.
-    pub fn fit(bounds: [DVec3; 2], size: [u32; 2], up: DVec3) -> Camera {
-        let up = up.try_normalize().unwrap_or(DVec3::Z);
-        let [first, second] = horizontal_axes(bounds, up);
-        // Looking mostly at the long side, turned towards the front: the view in which bodywork is judged.
-        let horizontal = (first * 0.62 + second * 0.78).normalize();
-        let elevation = 24f64.to_radians();
-        let direction = horizontal * elevation.cos() + up * elevation.sin();
-        Camera::fit_from(bounds, size, up, direction, DEFAULT_FOV)
+    /// A camera that looks against `direction` (from the object to the eye) and is as near as it can be with all
+    /// `points` in the picture: they reach [`FILL`] of its half width or half height on both sides.
+    pub fn fit(points: &[DVec3], size: [u32; 2], up: DVec3, direction: DVec3, fov: f64) -> Camera {
+        let forward = -direction.try_normalize().unwrap_or(DVec3::X);
+        let mut camera = Camera { eye: DVec3::ZERO, target: forward, up, fov, size };
+        let axes = camera.axes();
+        let range = |value: &dyn Fn(DVec3) -> f64| {
+            points
+                .iter()
+                .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &p| [low.min(value(p)), high.max(value(p))])
+        };
+        // Along each picture axis a: |(p - eye) . a| <= k (p - eye) . forward, k = FILL / scale, bounds eye . a from both
+        // sides; the two meet at the nearest possible eye.
+        let sides = [axes.right, axes.up].map(|axis| (axis, FILL / axes.scale[usize::from(axis == axes.up)]));
+        let limits = sides.map(|(axis, k)| {
+            let low = range(&|p| p.dot(axis) - k * p.dot(forward))[1];
+            let high = range(&|p| p.dot(axis) + k * p.dot(forward))[0];
+            (low, high, (high - low) / (2.0 * k))
+        });
+        let [front, back] = range(&|p| p.dot(forward));
+        // A point, or points on the line of sight, would put the eye on the object.
+        let clearance = (back - front).max(front.abs() * 1e-9).max(f64::MIN_POSITIVE);
+        let depth = limits[0].2.min(limits[1].2).min(front - 0.05 * clearance);
+        let across = sides.iter().zip(&limits).map(|((axis, _), (low, high, _))| *axis * (0.5 * (low + high)));
+        camera.eye = forward * depth + across.sum::<DVec3>();
+        camera.target = camera.eye + forward * (0.5 * (front + back) - depth);
+        camera
     }
 
-    /// A camera that sees the box `bounds` from `direction` (pointing from the object to the eye).
-    pub fn fit_from(bounds: [DVec3; 2], size: [u32; 2], up: DVec3, direction: DVec3, fov: f64) -> Camera {
-        /// Part of the picture's half width and half height that the object may fill.
-        const FILL: f64 = 0.90;
-        let target = (bounds[0] + bounds[1]) * 0.5;
-        let diagonal = (bounds[1] - bounds[0]).length().max(f64::MIN_POSITIVE);
-        let direction = direction.try_normalize().unwrap_or(DVec3::X);
-        let mut camera = Camera { eye: target + direction * diagonal, target, up, fov, size };
-        let axes = camera.axes();
-        // A corner d (from the target) fits at distance D when scale |d . axis| <= FILL (D + d . forward).
-        let distance = corners(bounds)
-            .map(|corner| {
-                let d = corner - target;
-                let reach = (axes.scale[0] * d.dot(axes.right).abs()).max(axes.scale[1] * d.dot(axes.up).abs());
-                reach / FILL - d.dot(axes.forward)
-            })
-            .into_iter()
-            .fold(diagonal * 0.1, f64::max);
-        camera.eye = target + direction * distance;
-        camera
+    /// Direction of the three-quarter view, from the object to the eye: mostly at the long side of the box `bounds`,
+    /// turned towards its front and from above, as bodywork is judged.
+    pub fn three_quarter(bounds: [DVec3; 2], up: DVec3) -> DVec3 {
+        let up = up.try_normalize().unwrap_or(DVec3::Z);
+        let [first, second] = horizontal_axes(bounds, up);
+        let horizontal = (first * 0.62 + second * 0.78).normalize();
+        let elevation = 20f64.to_radians();
+        horizontal * elevation.cos() + up * elevation.sin()
     }
 
     /// The camera's frame; a degenerate `up` or `target` is replaced by a usable one.
@@ -139,24 +147,39 @@ mod tests {
     use super::*;
 
     #[test]
-    fn fitted_box_fills_the_picture_and_stays_inside() {
+    fn fitted_points_fill_the_picture_and_stay_inside() {
         for (size, up) in [([640, 480], DVec3::Z), ([300, 900], DVec3::Y)] {
             let bounds = [dvec3(1000.0, -502.0, 200.0), dvec3(1004.0, -500.0, 201.0)];
-            let camera = Camera::fit(bounds, size, up);
-            let mut reach: f64 = 0.0;
-            for corner in corners(bounds) {
-                let [x, y] = camera.project(corner).unwrap();
-                reach = reach.max((2.0 * x / f64::from(size[0]) - 1.0).abs());
-                reach = reach.max((2.0 * y / f64::from(size[1]) - 1.0).abs());
+            let points = corners(bounds);
+            let camera = Camera::fit(&points, size, up, Camera::three_quarter(bounds, up), DEFAULT_FOV);
+            let mut reach = [[0.0f64; 2]; 2];
+            for point in points {
+                let pixel = camera.project(point).unwrap();
+                for k in 0..2 {
+                    let ndc = 2.0 * pixel[k] / f64::from(size[k]) - 1.0;
+                    reach[k] = [reach[k][0].min(ndc), reach[k][1].max(ndc)];
+                }
             }
-            assert!((reach - 0.9).abs() < 1e-9, "{reach}");
+            // Centred both ways, and as large as it can be one way.
+            for [low, high] in reach {
+                assert!((low + high).abs() < 1e-9 && high < FILL + 1e-9, "{reach:?}");
+            }
+            assert!((reach[0][1].max(reach[1][1]) - FILL).abs() < 1e-9, "{reach:?}");
             assert!(camera.near(bounds) > 0.0);
         }
     }
 
     #[test]
+    fn degenerate_objects_are_seen_from_outside() {
+        for points in [vec![DVec3::ONE], vec![DVec3::ZERO, DVec3::X], vec![DVec3::ONE * 1e6; 3]] {
+            let camera = Camera::fit(&points, [64, 64], DVec3::Z, DVec3::X, DEFAULT_FOV);
+            assert!(camera.eye.is_finite() && camera.eye != camera.target, "{camera:?}");
+        }
+    }
+
+    #[test]
     fn pixel_ray_inverts_project() {
-        let camera = Camera::fit([DVec3::ZERO, DVec3::ONE], [64, 48], DVec3::Y);
+        let camera = Camera::fit(&corners([DVec3::ZERO, DVec3::ONE]), [64, 48], DVec3::Y, DVec3::ONE, DEFAULT_FOV);
         let ray = camera.pixel_ray(10.25, 40.5);
         let [x, y] = camera.project(camera.eye + ray * 3.7).unwrap();
         assert!((x - 10.25).abs() < 1e-10 && (y - 40.5).abs() < 1e-10);

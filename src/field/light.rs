@@ -1,6 +1,5 @@
 //! The plane light source.
 
-use super::camera::horizontal_axes;
 use glam::DVec3;
 
 /// A plane light source anywhere in space (Yasui & Kanai 2004, sec. 3.1, fig. 2; Ulmet 2003, eq. 5.1).
@@ -27,24 +26,6 @@ impl Light {
         let along =
             (lines - facing * lines.dot(facing)).try_normalize().unwrap_or_else(|| facing.any_orthonormal_vector());
         Light { center, axes: [along.cross(facing), along], half: [f64::INFINITY; 2], spacing }
-    }
-
-    /// A ceiling of tubes for an object inside `bounds` seen from `eye`: one and a half diagonals above the object, tilted
-    /// towards the eye so that flanks as well as tops mirror it, its tubes along the object's longest side (on a car
-    /// they flow from bonnet to boot). The constants are empirical: chosen by looking at bodies of many shapes.
-    pub fn fit(bounds: [DVec3; 2], eye: DVec3, up: DVec3) -> Light {
-        const HEIGHT: f64 = 1.5;
-        const TILT_DEGREES: f64 = 24.0;
-        const SPACING: f64 = 0.2;
-        let up = up.try_normalize().unwrap_or(DVec3::Z);
-        let middle = (bounds[0] + bounds[1]) * 0.5;
-        let diagonal = (bounds[1] - bounds[0]).length().max(f64::MIN_POSITIVE);
-        let towards = eye - middle;
-        let towards = (towards - up * towards.dot(up)).try_normalize().unwrap_or(DVec3::ZERO);
-        let (sin, cos) = TILT_DEGREES.to_radians().sin_cos();
-        let direction = (up * cos + towards * sin).normalize();
-        let [long, _] = horizontal_axes(bounds, up);
-        Light::new(middle + direction * (diagonal * HEIGHT), -direction, long, diagonal * SPACING)
     }
 
     /// Unit normal of the plane.

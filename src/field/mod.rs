@@ -8,11 +8,13 @@ mod camera;
 mod light;
 mod pattern;
 mod reflection;
+mod rig;
 
 pub use camera::{Axes, Camera, DEFAULT_FOV};
 pub use light::Light;
 pub use pattern::{Pattern, Picture};
 pub use reflection::{reflection, reflection_direction};
+pub use rig::Scout;
 
 use glam::{DVec2, DVec3};
 

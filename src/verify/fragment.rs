@@ -3,7 +3,7 @@
 
 use super::bin::{Bins, Difference, Key, Sample, Tolerance, angle_deg};
 use super::{Subject, VerifyError};
-use crate::field::{Camera, Light};
+use crate::field::Scout;
 use crate::gpu::{Gpu, NO_PATCH, View};
 use crate::osd::{Answer, Far, Reference};
 use glam::DVec3;
@@ -21,9 +21,9 @@ pub(super) fn run(
     bins: &mut Bins,
 ) -> Result<(), VerifyError> {
     let surface = subject.surface;
-    let Some(bounds) = surface.bounds() else { return Ok(()) };
-    let camera = Camera::fit(bounds, size, DVec3::Z);
-    let light = Light::fit(bounds, camera.eye, camera.up);
+    let Some(scout) = Scout::new(surface) else { return Ok(()) };
+    let camera = scout.camera(size, DVec3::Z);
+    let light = scout.light(camera.eye, camera.up);
     let image = gpu.inspect(&gpu.upload(surface)?, &View::new(camera, light))?;
 
     let pixels: Vec<usize> = (0..image.patch.len()).filter(|&i| image.patch[i] != NO_PATCH).collect();

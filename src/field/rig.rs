@@ -1,0 +1,147 @@
+//! Camera and light that suit a surface, found by looking at it.
+
+use super::{Camera, DEFAULT_FOV, Light, reflection, reflection_direction};
+use crate::stam::LimitSurface;
+use glam::DVec3;
+
+/// A surface as the automatic fit sees it: scattered limit points with normals.
+#[derive(Debug, Clone)]
+pub struct Scout {
+    /// Corners and points of the ptex faces.
+    outline: Vec<DVec3>,
+    points: Vec<DVec3>,
+    normals: Vec<DVec3>,
+    /// Area that each point stands for.
+    areas: Vec<f64>,
+    bounds: [DVec3; 2],
+}
+
+/// Points looked at, about.
+const BUDGET: usize = 40_000;
+/// Points a ptex face, each way; inside it, because derivatives may be infinite at its corners.
+const GRID: usize = 3;
+
+impl Scout {
+    /// Looks at a surface; `None` if it has no patch.
+    pub fn new(surface: &LimitSurface) -> Option<Scout> {
+        let bounds = surface.bounds()?;
+        let stride = (surface.ptex_count() * GRID * GRID).div_ceil(BUDGET).max(1);
+        let (mut outline, mut points, mut normals, mut areas) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        for ptex in (0..surface.ptex_count() as u32).step_by(stride) {
+            let at = |u: f64, v: f64| surface.evaluate_ptex(ptex, [u, v]).map(|(_, jet)| jet);
+            for k in 0..GRID * GRID {
+                let [u, v] = [k % GRID, k / GRID].map(|i| (i as f64 + 0.5) / GRID as f64);
+                if let Some(jet) = at(u, v) {
+                    points.push(jet.position);
+                    normals.push(jet.normal);
+                    areas.push(jet.du.cross(jet.dv).length());
+                }
+            }
+            let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
+            outline.extend(corners.iter().filter_map(|&(u, v)| at(u, v)).map(|jet| jet.position));
+        }
+        outline.extend(&points);
+        Some(Scout { outline, points, normals, areas, bounds })
+    }
+
+    /// A camera that sees all of the surface from `direction` (from the object to the eye), vertical field of view `fov`
+    /// in degrees.
+    pub fn camera_from(&self, size: [u32; 2], up: DVec3, direction: DVec3, fov: f64) -> Camera {
+        Camera::fit(&self.outline, size, up, direction, fov)
+    }
+
+    /// The three-quarter view.
+    pub fn camera(&self, size: [u32; 2], up: DVec3) -> Camera {
+        self.camera_from(size, up, Camera::three_quarter(self.bounds, up), DEFAULT_FOV)
+    }
+
+    /// An infinite plane of tubes, placed so that as much as possible of what `eye` sees mirrors it, in doubt behind the
+    /// eye and above it; its tubes run along the longest side of the object (on a car they flow from bonnet to boot). The
+    /// spacing follows from the mirrored points themselves, so that flat and round objects show as many lines. The
+    /// constants are empirical: chosen by looking at bodies of many shapes.
+    pub fn light(&self, eye: DVec3, up: DVec3) -> Light {
+        /// Distance of the plane in diagonals: so far that the lines show the normals rather than the positions.
+        const DISTANCE: f64 = 4.0;
+        /// Tubes that the middle half of the visible surface mirrors.
+        const TUBES: f64 = 5.0;
+        let middle = (self.bounds[0] + self.bounds[1]) * 0.5;
+        let extent = self.bounds[1] - self.bounds[0];
+        let diagonal = extent.length().max(f64::MIN_POSITIVE);
+        let seen = self.visible(eye);
+        let direction = self.lightest(&seen, eye, up);
+        let longest = match extent {
+            e if e.x >= e.y && e.x >= e.z => DVec3::X,
+            e if e.y >= e.z => DVec3::Y,
+            _ => DVec3::Z,
+        };
+        let mut light = Light::new(middle + direction * (DISTANCE * diagonal), -direction, longest, diagonal);
+        let mut hits: Vec<(f64, f64)> = seen
+            .iter()
+            .filter_map(|&(i, w)| Some((reflection(&light, self.points[i], self.normals[i], eye)?.x, w)))
+            .collect();
+        hits.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let total: f64 = hits.iter().map(|(_, w)| w).sum();
+        let quantile = |part: f64| {
+            let mut sum = 0.0;
+            hits.iter()
+                .find(|(_, w)| {
+                    sum += w;
+                    sum >= part * total
+                })
+                .map_or(0.0, |(x, _)| *x)
+        };
+        let spread = quantile(0.75) - quantile(0.25);
+        if spread > 0.0 && spread.is_finite() {
+            // A plane object mirrors less than a tube: then the spacing is not allowed to vanish.
+            light.spacing = (spread / TUBES).max(1e-3 * diagonal);
+        }
+        light
+    }
+
+    /// The direction from which a plane light reaches most of the visible surface.
+    fn lightest(&self, seen: &[(usize, f64)], eye: DVec3, up: DVec3) -> DVec3 {
+        /// Candidates, evenly over the sphere.
+        const DIRECTIONS: usize = 400;
+        /// Sine of the elevation over the plane below which its lines crowd at the horizon.
+        const HORIZON: f64 = 0.2;
+        let stride = seen.len().div_ceil(4000).max(1);
+        let mirrored: Vec<(DVec3, f64)> = seen
+            .iter()
+            .step_by(stride)
+            .map(|&(i, w)| (reflection_direction(self.points[i], self.normals[i], eye).normalize_or_zero(), w))
+            .collect();
+        let total: f64 = mirrored.iter().map(|(_, w)| w).sum();
+        let middle = (self.bounds[0] + self.bounds[1]) * 0.5;
+        let habit = 0.3 * (eye - middle).normalize_or_zero() + 0.1 * up.normalize_or_zero();
+        let score = |d: DVec3| {
+            let lit: f64 = mirrored.iter().filter(|(r, _)| r.dot(d) > HORIZON).map(|(_, w)| w).sum();
+            lit / total.max(f64::MIN_POSITIVE) + habit.dot(d)
+        };
+        let golden = std::f64::consts::PI * (3.0 - 5f64.sqrt());
+        let candidate = |k: usize| {
+            let z = 1.0 - (2 * k + 1) as f64 / DIRECTIONS as f64;
+            let (sin, cos) = (golden * k as f64).sin_cos();
+            DVec3::new(cos, sin, 0.0) * (1.0 - z * z).sqrt() + DVec3::Z * z
+        };
+        (0..DIRECTIONS)
+            .map(candidate)
+            // Light from below looks wrong, whatever it reaches.
+            .filter(|d| d.dot(up.normalize_or_zero()) > 0.1)
+            .map(|d| (d, score(d)))
+            .max_by(|a, b| a.1.total_cmp(&b.1))
+            .map_or(up, |(d, _)| d)
+    }
+
+    /// Points that face the eye, with their share of the picture; all of them where most turn away (a sheet seen from
+    /// behind).
+    fn visible(&self, eye: DVec3) -> Vec<(usize, f64)> {
+        let facing = |i: usize| {
+            let sight = eye - self.points[i];
+            self.areas[i] * self.normals[i].dot(sight) / sight.length().max(f64::MIN_POSITIVE).powi(3)
+        };
+        let all: Vec<_> = (0..self.points.len()).map(|i| (i, facing(i))).collect();
+        let sum: f64 = all.iter().map(|(_, w)| w).sum();
+        let side = if sum < 0.0 { -1.0 } else { 1.0 };
+        all.into_iter().map(|(i, w)| (i, side * w)).filter(|(_, w)| *w > 0.0).collect()
+    }
+}
