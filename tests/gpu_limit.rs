@@ -6,7 +6,7 @@ use catoptric::gpu::{AdapterChoice, Gpu, GpuError, PatchNet, Sample};
 use catoptric::mesh::SubdivMesh;
 use catoptric::stam::{Jet, LimitSurface, Net, weights};
 use glam::{DVec3, dvec3};
-use gpu_support::{Random, gpu, mesh, pole};
+use gpu_support::{Random, gpu, mesh};
 
 /// Positions are sums of 16 products in f32 of numbers of the size of the patch, which is at most the diagonal: 20
 /// roundings of 2^-24 (6e-8) each.
@@ -16,6 +16,35 @@ const POSITION: f64 = 2e-6;
 const NORMAL_DEGREES: f64 = 1e-3;
 /// Derivatives cancel: 20 roundings of the net's size, which is a few times the derivative's, and 2^-24 more for the power.
 const DERIVATIVE: f64 = 1e-5;
+
+/// A disc of quads round one vertex of this valence, two rings wide, with uneven heights.
+fn pole(valence: usize, seed: u64) -> SubdivMesh {
+    let mut random = Random::new(seed);
+    let mut mesh = SubdivMesh { name: format!("pole {valence}"), points: vec![DVec3::ZERO], ..SubdivMesh::default() };
+    // Sector k holds the grid points (i, j), i from 1 to 2 along its first spoke, j from 0 to 2 towards the next one.
+    let index = |sector: usize, i: usize, j: usize| match (i, j) {
+        (0, 0) => 0,
+        (0, j) => (1 + 6 * ((sector + 1) % valence) + 3 * (j - 1)) as u32,
+        (i, j) => (1 + 6 * sector + 3 * (i - 1) + j) as u32,
+    };
+    for sector in 0..valence {
+        let spoke = |k: usize| {
+            let angle = std::f64::consts::TAU * k as f64 / valence as f64;
+            dvec3(angle.cos(), angle.sin(), 0.0)
+        };
+        for (i, j) in (1..3).flat_map(|i| (0..3).map(move |j| (i, j))) {
+            let mut noise = || 0.4 * (random.next() - 0.5);
+            let p = spoke(sector) * i as f64 + spoke(sector + 1) * j as f64 + dvec3(noise(), noise(), 2.0 * noise());
+            mesh.points.push(p);
+        }
+        for (i, j) in (0..2).flat_map(|i| (0..2).map(move |j| (i, j))) {
+            mesh.face_sizes.push(4);
+            let corners = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)];
+            mesh.face_vertices.extend(corners.map(|(i, j)| index(sector, i, j)));
+        }
+    }
+    mesh
+}
 
 fn angle_degrees(a: DVec3, b: DVec3) -> f64 {
     a.cross(b).length().atan2(a.dot(b)).to_degrees()
@@ -132,7 +161,7 @@ fn regular_nets_need_no_mesh() {
             })
         })
         .collect();
-    let patch = |&net: &[DVec3; 16]| PatchNet { depth: 0, transition: 0, net: Net::Regular(net), normal: DVec3::ZERO };
+    let patch = |&net: &[DVec3; 16]| PatchNet { level: 0, transition: 0, net: Net::Regular(net), normal: DVec3::ZERO };
     let patches: Vec<PatchNet> = nets.iter().map(patch).collect();
     let tables = gpu().upload_patches(patches.as_slice()).expect("it fits");
     let uv = parameters(5);

@@ -50,14 +50,31 @@ macro_rules! same_layout {
 #[test]
 fn structs_have_the_same_layout_on_both_sides() {
     same_layout!("Draw", DrawRecord { first, group_size, padding });
-    same_layout!("Frame", FrameRecord {
-        clip_x, near, clip_y, focal, clip_w, proxy_level, scale, shift, size, padding
-    });
+    same_layout!(
+        "Frame",
+        FrameRecord { clip_x, near, clip_y, focal, clip_w, proxy_level, scale, shift, size, padding }
+    );
     same_layout!("SampleRecord", SampleRecord { uv, patch_id, padding });
     same_layout!("JetRecord", JetRecord { position, du, dv, normal });
     same_layout!("Light", LightRecord { center, spacing, axis_x, half_x, axis_y, half_y });
-    same_layout!("Shade", ShadeRecord {
-        paint, width, tube, pattern, top, padding0, bottom, padding1, up, padding2, key, padding3, picture_scale, padding4
-    });
+    same_layout!(
+        "Shade",
+        ShadeRecord {
+            paint,
+            width,
+            tube,
+            pattern,
+            top,
+            padding0,
+            bottom,
+            padding1,
+            up,
+            padding2,
+            key,
+            padding3,
+            picture_scale,
+            padding4
+        }
+    );
     same_layout!("Resolve", ResolveRecord { top, samples, bottom, row, rows });
 }

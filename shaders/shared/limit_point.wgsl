@@ -9,7 +9,7 @@ struct LimitPoint {
     normal: vec3f,
 }
 
-// A texel a patch: first texel in `points`; kind + 256 depth + 65536 levels; first texel in `scales`; 0.
+// A texel a patch: first texel in `points`; kind + 256 refinement level + 65536 levels of its table; first texel in `scales`; 0.
 @group(0) @binding(0) var patches: texture_2d<u32>;
 // Rows of 4 points, 3 texels each: the four x, the four y, the four z. A regular patch has 4 rows. A level of an irregular
 // patch has 9: those of the windows at u >= 1 (5), then those of the window at u < 1 (4); after the last level comes
@@ -35,7 +35,7 @@ fn unit_or_zero(v: vec3f) -> vec3f {
     return select(vec3f(0.0), v / size, size > 0.0);
 }
 
-fn depth_of(record: vec4u) -> u32 {
+fn refinement_of(record: vec4u) -> u32 {
     return (record.y >> 8u) & 255u;
 }
 

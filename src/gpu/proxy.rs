@@ -1,7 +1,7 @@
 //! The proxy tessellation: small parameter grids, instanced over the patches that use them.
 //!
-//! For level L a patch of depth d is cut into 2^max(0, L-d) parts each way, so neighbours of any depth up to L meet in
-//! the same vertices. A patch that is not cut but has a deeper neighbour (a transition edge) becomes a fan with a vertex
+//! For level L a patch of refinement level l is cut into 2^max(0, L-l) parts each way, so neighbours of any level up to L
+//! meet in the same vertices. A patch that is not cut but has a deeper neighbour (a transition edge) becomes a fan with a vertex
 //! in the middle of that edge.
 //!
 //! An instance is a group of patches, so that it has about a thousand vertices however coarse the pattern is: software
@@ -41,10 +41,10 @@ pub(super) struct Draw {
 }
 
 impl Proxy {
-    /// Tessellation of level `level` of patches with these depths and transition bits.
+    /// Tessellation of level `level` of patches with these refinement levels and transition bits.
     pub fn new(cells: &[(u8, u8)], level: u32) -> Proxy {
         // Fans 0 to 15 (0: the plain quad), then grids of 2, 4, ... 2^level parts.
-        let pattern = |&(depth, transition): &(u8, u8)| match level.saturating_sub(u32::from(depth)) {
+        let pattern = |&(own, transition): &(u8, u8)| match level.saturating_sub(u32::from(own)) {
             0 => usize::from(transition & 15),
             finer => 15 + finer as usize,
         };

@@ -34,8 +34,8 @@ const WINDOW_ROWS: [usize; 9] = [0, 5, 10, 15, 20, 4, 9, 14, 19];
 /// One patch, as the tables want it.
 #[derive(Debug, Clone)]
 pub struct PatchNet {
-    /// Depth in the quadtree of its ptex face.
-    pub depth: u8,
+    /// Refinement level, as [`Patch::level`](crate::patch::Patch::level).
+    pub level: u8,
     /// As [`Patch::transition`](crate::patch::Patch::transition).
     pub transition: u8,
     /// Control net, with 1 to [`TABLE_LEVELS`] levels where it is irregular.
@@ -71,7 +71,7 @@ impl PatchSource for LimitSurface {
             false => DVec3::ZERO,
         };
         let record = self.patches()[patch];
-        PatchNet { depth: record.depth, transition: record.transition, net: self.net(patch, TABLE_LEVELS), normal }
+        PatchNet { level: record.level, transition: record.transition, net: self.net(patch, TABLE_LEVELS), normal }
     }
 
     fn bounds(&self) -> [DVec3; 2] {
@@ -121,7 +121,7 @@ pub struct Tables {
     scales: wgpu::Texture,
     /// Origin of every patch, world space.
     pub(super) origins: Vec<DVec3>,
-    /// Depth and transition bits of every patch.
+    /// Refinement level and transition bits of every patch.
     pub(super) cells: Vec<(u8, u8)>,
     bounds: [DVec3; 2],
     size: u64,
@@ -144,9 +144,9 @@ impl Tables {
         self.origins[patch]
     }
 
-    /// Area of the patches in ptex faces.
+    /// Area of the patches in quad faces of the control mesh.
     pub fn faces(&self) -> f64 {
-        self.cells.iter().map(|&(depth, _)| 0.25f64.powi(i32::from(depth))).sum()
+        self.cells.iter().map(|&(level, _)| 0.25f64.powi(i32::from(level))).sum()
     }
 
     /// Box round the surface.
@@ -234,7 +234,7 @@ fn scale(lambda: f64, m: i32) -> [f32; 2] {
 
 /// Writes the texels of one patch, which start at `first`.
 fn place(patch_net: PatchNet, patch: usize, first: usize, texels: &mut [[f32; 4]], unit: f64) -> Placed {
-    let PatchNet { depth, transition, net, normal } = patch_net;
+    let PatchNet { level, transition, net, normal } = patch_net;
     let mut at = 0;
     let mut row = |points: &[DVec3]| {
         let local: [DVec3; 4] = std::array::from_fn(|k| points[k] / unit);
@@ -257,6 +257,6 @@ fn place(patch_net: PatchNet, patch: usize, first: usize, texels: &mut [[f32; 4]
             (limit, KIND_IRREGULAR, stored as u32, Some(lambda))
         }
     };
-    let record = [first as u32, kind | u32::from(depth) << 8 | levels << 16, 0, 0];
-    Placed { patch, record, cell: (depth, transition), origin, lambda }
+    let record = [first as u32, kind | u32::from(level) << 8 | levels << 16, 0, 0];
+    Placed { patch, record, cell: (level, transition), origin, lambda }
 }

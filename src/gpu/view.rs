@@ -60,7 +60,8 @@ pub struct View {
     pub pattern: Pattern,
     /// How position and normal come to a pixel.
     pub pipeline: Pipeline,
-    /// Level of the proxy tessellation, 0 to [`MAX_PROXY_LEVEL`]: 2^level parts a ptex face. `None`: as fine as the picture
+    /// Level of the proxy tessellation, 0 to [`MAX_PROXY_LEVEL`]: 2^level parts a quad
+    /// face. `None`: as fine as the picture
     /// asks for ([`View::proxy_level_for`]).
     pub proxy_level: Option<u32>,
     /// Samples a pixel each way, 1 to [`MAX_SAMPLES`].

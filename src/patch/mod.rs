@@ -83,6 +83,8 @@ pub struct Patch {
     pub ptex: u32,
     /// Depth in the quadtree of the ptex face: the patch spans 2^-depth in u and v.
     pub depth: u8,
+    /// Refinement level: `depth`, and one more in the sub-faces of n-gons. Edges of patches of one level are as long.
+    pub level: u8,
     /// Position in the quadtree, in units of 2^-depth.
     pub origin: [u16; 2],
     /// Quarter turns: local (0,0) lies at corner `rotation` of the quadtree cell (corners (0,0), (1,0), (1,1), (0,1)).

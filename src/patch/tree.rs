@@ -167,6 +167,7 @@ impl Walk {
         Some(Patch {
             ptex: cell.ptex,
             depth: cell.depth,
+            level: level as u8,
             origin: cell.origin,
             rotation: rotation as u8,
             kind,
