@@ -96,7 +96,7 @@ fn bad_usage_is_refused() {
         (&["render", "/no/such/file.obj"], "no such file"),
         (&["render", "--size", "0x0"], "WIDTHxHEIGHT"),
         (&["render", "--size", "99999x10"], "WIDTHxHEIGHT"),
-        (&["render", "--fov", "180"], "fov"),
+        (&["render", "--fov", "180"], "field of view 180"),
         (&["render", "--eye", "1,2"], "X,Y,Z"),
         (&["render", "--eye", "1,2,nan"], "X,Y,Z"),
         (&["render", "--pipeline", "magic"], "magic"),
@@ -104,7 +104,10 @@ fn bad_usage_is_refused() {
         (&["render", "-o", "no-such-folder/out.png"], "no-such-folder"),
         (&["render", "-o", "out.tiff"], "out.tiff"),
         (&["eval", "--samples", "no-such.csv"], "no-such.csv"),
+        (&["render", "--up", "0,0,0"], "up direction"),
+        (&["render", "--light-spacing", "0"], "above 0"),
         (&["eval"], "--samples"),
+        (&[], "no command"),
     ] {
         let message = folder.refused(args);
         assert!(message.contains(expected), "{args:?}: {message}");

@@ -70,9 +70,14 @@ pub fn run() -> ExitCode {
             return if error.print().is_ok() { ExitCode::SUCCESS } else { ExitCode::from(2) };
         }
         Err(error) => {
+            // One line: what is wrong, without the usage that clap puts below it.
             let text = error.to_string();
-            let first = text.lines().next().unwrap_or("bad usage").trim_start_matches("error: ");
-            eprintln!("catoptric: {first}; see catoptric --help");
+            let what: Vec<&str> = text.lines().map(str::trim).take_while(|line| !line.is_empty()).collect();
+            let what = match error.kind() {
+                clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => "no command".to_owned(),
+                _ => what.join(" ").trim_start_matches("error: ").to_owned(),
+            };
+            eprintln!("catoptric: {what}; see catoptric --help");
             return ExitCode::from(2);
         }
     };
