@@ -195,7 +195,7 @@ fn near_background(image: &SurfaceImage, i: usize) -> bool {
 fn enclosed_background(image: &SurfaceImage) -> usize {
     let [width, height] = image.size.map(|n| n as usize);
     let mut open = vec![false; width * height];
-    let is_border = |i: usize| i % width == 0 || i % width == width - 1 || i / width == 0 || i / width == height - 1;
+    let is_border = |i: usize| [0, width - 1].contains(&(i % width)) || [0, height - 1].contains(&(i / width));
     let is_background = |i: &usize| image.patch[*i] == NO_PATCH;
     let mut queue: Vec<usize> = (0..width * height).filter(|&i| is_border(i)).filter(is_background).collect();
     queue.iter().for_each(|&i| open[i] = true);

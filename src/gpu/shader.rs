@@ -24,7 +24,8 @@ pub const TABLE_WIDTH: u32 = 4096;
 /// Texels of one level of an irregular patch: 9 rows of 4 points, x, y and z each.
 pub const LEVEL_TEXELS: u32 = 27;
 /// Distance in pixels by which the borders of proxy patches overlap: large against the rasteriser's grid of 1/256 pixel
-/// on which vertices that differ by rounding may land one step apart, small against a pixel.
+/// on which vertices that differ by rounding may land one step apart, small against a pixel. (Measured: in 36 million
+/// pixels of a cube at level 7, 6 fall through without it, none with it.)
 pub const PUSH: f32 = 0.1;
 
 /// One shader module: its name, the files that it consists of, and its entry points.
