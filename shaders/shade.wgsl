@@ -10,7 +10,8 @@ struct Shade {
     pattern: u32,
     // Linear RGB of the surroundings that the paint reflects faintly, above and below.
     top: vec3f,
-    padding0: f32,
+    // Samples in a pixel's width.
+    samples: f32,
     bottom: vec3f,
     padding1: f32,
     // Direction up and direction to the key light, world space.
@@ -57,13 +58,14 @@ fn radiance(field: vec2f, jx: vec2f, jy: vec2f) -> vec3f {
     let sy = jy / light.spacing;
     let w = sqrt(sx * sx + sy * sy);
     let inside = slab(field.x, light.half_x, w.x * light.spacing) * slab(field.y, light.half_y, w.y * light.spacing);
+    let n = shade_in.samples;
     var on = vec3f(0.0);
     switch shade_in.pattern {
-        case PATTERN_STRIPES: { on = vec3f(stripe(s.x, shade_in.width, w.x)); }
+        case PATTERN_STRIPES: { on = vec3f(stripe(s.x, shade_in.width, w.x, n)); }
         case PATTERN_LATTICE: {
-            on = vec3f(1.0 - (1.0 - stripe(s.x, shade_in.width, w.x)) * (1.0 - stripe(s.y, shade_in.width, w.y)));
+            on = vec3f(1.0 - (1.0 - stripe(s.x, shade_in.width, w.x, n)) * (1.0 - stripe(s.y, shade_in.width, w.y, n)));
         }
-        case PATTERN_CIRCLES: { on = vec3f(disc(s, shade_in.width, sx, sy)); }
+        case PATTERN_CIRCLES: { on = vec3f(disc(s, shade_in.width, sx, sy, n)); }
         default: {
             let k = shade_in.picture_scale;
             on = textureSampleGrad(picture, picture_sampler, field * k + 0.5, jx * k, jy * k).rgb;

@@ -65,7 +65,7 @@ fn structs_have_the_same_layout_on_both_sides() {
             tube,
             pattern,
             top,
-            padding0,
+            samples,
             bottom,
             padding1,
             up,

@@ -136,8 +136,8 @@ pub struct ShadeRecord {
     pub pattern: u32,
     /// Linear RGB of the surroundings above.
     pub top: [f32; 3],
-    /// Zero.
-    pub padding0: f32,
+    /// Samples in a pixel's width.
+    pub samples: f32,
     /// Linear RGB of the surroundings below.
     pub bottom: [f32; 3],
     /// Zero.

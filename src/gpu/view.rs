@@ -210,7 +210,7 @@ impl View {
             tube,
             pattern,
             top,
-            padding0: 0.0,
+            samples: self.samples as f32,
             bottom,
             padding1: 0.0,
             up: self.camera.up.normalize_or_zero().as_vec3().to_array(),
