@@ -4,7 +4,7 @@ use glam::DVec3;
 
 /// A plane light source anywhere in space (Yasui & Kanai 2004, sec. 3.1, fig. 2; Ulmet 2003, eq. 5.1).
 ///
-/// Its points have coordinates (x, y) = ((p - center) . axes[0], (p - center) . axes[1]). Light lines are x = const: they
+/// Its points have coordinates (x, y) = `((p - center) . axes[0], (p - center) . axes[1])`. Light lines are x = const: they
 /// run along `axes[1]`, `spacing` apart.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Light {

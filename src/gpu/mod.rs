@@ -83,7 +83,7 @@ impl GpuError {
 pub struct Sample {
     /// Patch index, as in [`LimitSurface::patches`].
     pub patch: u32,
-    /// Patch-local parameters, each in [0,1]; clamped.
+    /// Patch-local parameters, each from 0 to 1; clamped.
     pub uv: [f32; 2],
 }
 
