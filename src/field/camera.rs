@@ -6,7 +6,7 @@ use glam::{DVec3, dvec3};
 pub const DEFAULT_FOV: f64 = 26.0;
 
 /// Part of the picture's half width and half height that a fitted object fills.
-pub const FILL: f64 = 0.92;
+const FILL: f64 = 0.92;
 
 /// Where the picture is taken from.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,7 +38,7 @@ pub struct Axes {
 
 impl Camera {
     /// A camera that looks against `direction` (from the object to the eye) and is as near as it can be with all
-    /// `points` in the picture: they reach [`FILL`] of its half width or half height on both sides.
+    /// `points` in the picture: they reach `FILL` of its half width or half height on both sides.
     pub fn fit(points: &[DVec3], size: [u32; 2], up: DVec3, direction: DVec3, fov: f64) -> Camera {
         let forward = -direction.try_normalize().unwrap_or(DVec3::X);
         let mut camera = Camera { eye: DVec3::ZERO, target: forward, up, fov, size };

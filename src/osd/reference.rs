@@ -34,7 +34,7 @@ pub struct ReferenceJet {
 
 /// An evaluator that we did not write.
 pub trait Reference {
-    /// Evaluates samples (ptex face, u, v), u and v in [0,1]. Fastest when samples come grouped by face.
+    /// Evaluates samples (ptex face, u, v), u and v 0 to 1. Fastest when samples come grouped by face.
     ///
     /// # Errors
     /// A face is out of range, or OpenSubdiv reports an error.

@@ -76,7 +76,7 @@ impl PatchKind {
     }
 }
 
-/// One leaf of the quadtree over a ptex face; its own local (u,v) span [0,1]^2.
+/// One leaf of the quadtree over a ptex face; its own local (u,v) span the unit square.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Patch {
     /// Ptex face that the patch lies in.
@@ -258,7 +258,7 @@ impl Patches {
         self.roots.len()
     }
 
-    /// The patch at (u,v), each in [0,1], of a ptex face, and the patch-local parameters; `None` in a hole.
+    /// The patch at (u,v), each 0 to 1, of a ptex face, and the patch-local parameters; `None` in a hole.
     ///
     /// # Panics
     /// `ptex` is not below [`ptex_count`](Self::ptex_count).

@@ -1,12 +1,12 @@
 //! The uniform cubic B-spline basis.
 
-/// Values of the four basis functions at t in [0,1].
+/// Values of the four basis functions at t from 0 to 1.
 pub fn basis(t: f64) -> [f64; 4] {
     let s = 1.0 - t;
     [s * s * s / 6.0, (t * t * (3.0 * t - 6.0) + 4.0) / 6.0, (s * s * (3.0 * s - 6.0) + 4.0) / 6.0, t * t * t / 6.0]
 }
 
-/// First derivatives of the four basis functions at t in [0,1].
+/// First derivatives of the four basis functions at t from 0 to 1.
 pub fn derivative(t: f64) -> [f64; 4] {
     let s = 1.0 - t;
     [-0.5 * s * s, 0.5 * t * (3.0 * t - 4.0), 0.5 * s * (4.0 - 3.0 * s), 0.5 * t * t]

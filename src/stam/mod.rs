@@ -38,7 +38,7 @@ pub struct Window {
 }
 
 impl Window {
-    /// The window at patch-local (u,v), each in [0,1]. At (0,0) it is the inner corner of level `LEVELS`, where the
+    /// The window at patch-local (u,v), each 0 to 1. At (0,0) it is the inner corner of level `LEVELS`, where the
     /// table has converged to the tangent plane.
     pub fn at([u, v]: [f64; 2]) -> Self {
         let largest = u.max(v);

@@ -87,7 +87,7 @@ impl LimitSurface {
         })
     }
 
-    /// The patch at (u,v), each in [0,1], of a ptex face, and the patch-local parameters; `None` in a hole.
+    /// The patch at (u,v), each 0 to 1, of a ptex face, and the patch-local parameters; `None` in a hole.
     ///
     /// # Panics
     /// `ptex` is not below [`ptex_count`](Self::ptex_count).
@@ -152,7 +152,7 @@ impl LimitSurface {
         Net::Irregular { limit, lambda: table.lambda, levels }
     }
 
-    /// Evaluates a patch at its local (u,v), each in [0,1]; derivatives by the local parameters.
+    /// Evaluates a patch at its local (u,v), each 0 to 1; derivatives by the local parameters.
     ///
     /// At the extraordinary vertex itself the derivatives are those of the innermost level: their limits are zero or
     /// infinite unless lambda is 1/2.
@@ -178,7 +178,7 @@ impl LimitSurface {
         Jet { position, du: stretch * du, dv: stretch * dv, normal }
     }
 
-    /// Evaluates a ptex face at (u,v), each in [0,1]: the patch and the jet, derivatives by the ptex parameters; `None`
+    /// Evaluates a ptex face at (u,v), each 0 to 1: the patch and the jet, derivatives by the ptex parameters; `None`
     /// in a hole.
     ///
     /// # Panics
