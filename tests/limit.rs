@@ -50,11 +50,11 @@ fn patches_of_a_ptex_face_meet_with_equal_derivatives() {
         let surface = LimitSurface::new(&mesh).expect("it has a surface");
         let unit = surface.diagonal();
         for (i, patch) in surface.patches().iter().enumerate() {
-            let size = 0.5f64.powi(i32::from(patch.depth));
-            let [u0, v0] = patch.origin.map(|x| f64::from(x) * size);
+            let size = patch.depth.map(|depth| 0.5f64.powi(i32::from(depth)));
+            let [u0, v0] = [0, 1].map(|k| f64::from(patch.origin[k]) * size[k]);
             // The lower and left neighbours across this patch's own sides, at its own parameters.
             for t in [0.25, 0.5, 0.8] {
-                for (uv, step) in [([u0 + t * size, v0], [0.0, -1e-12]), ([u0, v0 + t * size], [-1e-12, 0.0])] {
+                for (uv, step) in [([u0 + t * size[0], v0], [0.0, -1e-12]), ([u0, v0 + t * size[1]], [-1e-12, 0.0])] {
                     let beyond = [uv[0] + step[0], uv[1] + step[1]];
                     if beyond[0] < 0.0 || beyond[1] < 0.0 {
                         continue;

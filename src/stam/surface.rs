@@ -125,7 +125,8 @@ impl LimitSurface {
                 (-1..=2).for_each(|j| mirror((i, j), (step, 0)));
             }
         }
-        net
+        let Some(rows) = self.patches.row_weights(patch) else { return net };
+        std::array::from_fn(|k| (0..4).map(|row| rows[k / 4][row] * net[4 * row + k % 4]).sum())
     }
 
     /// Control points of an irregular patch relative to s0, and s0.
@@ -198,8 +199,8 @@ impl Patch {
             2 => (-jet.du, -jet.dv),
             _ => (jet.dv, -jet.du),
         };
-        let scale = f64::from(1u32 << self.depth);
-        Jet { du: scale * du, dv: scale * dv, ..jet }
+        let scale = self.scale();
+        Jet { du: scale[0] * du, dv: scale[1] * dv, ..jet }
     }
 }
 
