@@ -1,28 +1,12 @@
 //! Properties of the exact limit that need no reference: patches meet, derivatives are derivatives, parameters map.
 
-use catoptric::mesh::{self, SubdivMesh};
+mod common;
+
+use catoptric::mesh;
 use catoptric::patch::PatchKind;
 use catoptric::stam::LimitSurface;
+use common::{angle_deg as angle, meshes};
 use glam::DVec3;
-use std::path::Path;
-
-fn meshes() -> Vec<SubdivMesh> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes");
-    let mut paths: Vec<_> = std::fs::read_dir(folder)
-        .expect("the test meshes are there")
-        .map(|entry| entry.expect("a readable entry").path())
-        .filter(|path| path.extension().is_some_and(|e| e == "obj"))
-        .collect();
-    paths.sort();
-    assert!(paths.len() >= 20, "test meshes are missing");
-    let mut meshes: Vec<_> = paths.iter().map(|path| mesh::read(path).expect("a test mesh is valid")).collect();
-    meshes.push(mesh::sample());
-    meshes
-}
-
-fn angle(a: DVec3, b: DVec3) -> f64 {
-    a.cross(b).length().atan2(a.dot(b)).to_degrees()
-}
 
 /// Every point of a ptex face lies in one patch, and parameters go there and back.
 #[test]

@@ -71,7 +71,12 @@ impl PatchSource for LimitSurface {
             false => DVec3::ZERO,
         };
         let record = self.patches()[patch];
-        PatchNet { depth: record.depth[0].max(record.depth[1]), transition: record.transition, net: self.net(patch, TABLE_LEVELS), normal }
+        PatchNet {
+            depth: record.depth[0].max(record.depth[1]),
+            transition: record.transition,
+            net: self.net(patch, TABLE_LEVELS),
+            normal,
+        }
     }
 
     fn bounds(&self) -> [DVec3; 2] {

@@ -6,10 +6,12 @@
 //! everything about the patch but its points. Smooth extraordinary vertices, darts, crease and corner sectors all end
 //! at level 2 at the latest; only finite sharpness takes ceil(sharpness) levels.
 
+mod adjacency;
 mod fan;
 mod strips;
 mod tree;
 
+pub use adjacency::{Adjacency, Neighbour};
 pub use tree::PHANTOM;
 pub(crate) use tree::slot;
 
@@ -252,6 +254,7 @@ pub struct Patches {
     splits: Vec<[Node; 4]>,
     strips: Vec<Strips>,
     row_weights: Vec<RowWeights>,
+    ptex_edges: adjacency::PtexEdges,
 }
 
 impl Patches {

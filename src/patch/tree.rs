@@ -1,5 +1,6 @@
 //! Finds the patches: walks the refined levels and stops at the first face whose limit is known in closed form.
 
+use super::adjacency::PtexEdges;
 use super::fan::Fan;
 use super::strips;
 use super::{MAX_VALENCE, Node, Patch, PatchError, PatchKind, Patches, RingClass, Strips, Support, Tip};
@@ -65,6 +66,7 @@ pub(super) fn build(refiner: &Refiner) -> Result<Patches, PatchError> {
     };
     walk.roots()?;
     walk.mark_transitions();
+    walk.out.ptex_edges = PtexEdges::new(&walk.levels[0]);
     Ok(walk.out)
 }
 

@@ -3,7 +3,7 @@
 use super::class::{ClassTable, WINDOW_POINTS};
 use super::{Jet, Window, weights};
 use crate::mesh::SubdivMesh;
-use crate::patch::{PHANTOM, Patch, PatchError, PatchKind, Patches, RingClass, slot};
+use crate::patch::{Adjacency, PHANTOM, Patch, PatchError, PatchKind, Patches, RingClass, slot};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -93,6 +93,11 @@ impl LimitSurface {
     /// `ptex` is not below [`ptex_count`](Self::ptex_count).
     pub fn locate(&self, ptex: u32, uv: [f64; 2]) -> Option<(usize, [f64; 2])> {
         self.patches.locate(ptex, uv)
+    }
+
+    /// What lies across every edge of every patch.
+    pub fn adjacency(&self) -> Adjacency {
+        Adjacency::new(&self.patches)
     }
 
     /// The kind of a patch.
