@@ -55,9 +55,11 @@ void osd_refiner_destroy(osd_refiner *refiner);
 
 /*
  * Feature-adaptive refinement, infinitely sharp patches on. Features other than semi-sharp ones are isolated to
- * `secondary` only. isolation in 1..10 (3.5.0 corrupts memory above 10), once per refiner.
+ * `secondary` only; with `single_crease`, faces along a regular crease of constant sharpness are not refined either.
+ * isolation in 1..10 (3.5.0 corrupts memory above 10), once per refiner.
  */
-osd_status osd_refiner_refine_adaptive(osd_refiner *refiner, int32_t isolation, int32_t secondary);
+osd_status osd_refiner_refine_adaptive(osd_refiner *refiner, int32_t isolation, int32_t secondary,
+                                       int32_t single_crease);
 /* Uniform refinement with full topology in the last level; once per refiner. */
 osd_status osd_refiner_refine_uniform(osd_refiner *refiner, int32_t level);
 

@@ -106,7 +106,8 @@ osd_status osd_refiner_create(const osd_mesh *mesh, osd_refiner **out) {
 
 void osd_refiner_destroy(osd_refiner *refiner) { delete refiner; }
 
-osd_status osd_refiner_refine_adaptive(osd_refiner *handle, int32_t isolation, int32_t secondary) {
+osd_status osd_refiner_refine_adaptive(osd_refiner *handle, int32_t isolation, int32_t secondary,
+                                       int32_t single_crease) {
     return guard([&] {
         require(isolation >= 1 && isolation <= 10, "isolation must be 1 to 10");
         require(secondary >= 0 && secondary <= 10, "secondary isolation must be 0 to 10");
@@ -114,7 +115,7 @@ osd_status osd_refiner_refine_adaptive(osd_refiner *handle, int32_t isolation, i
         Far::TopologyRefiner::AdaptiveOptions options(isolation);
         options.SetSecondaryLevel(secondary);
         options.useInfSharpPatch = true;
-        options.useSingleCreasePatch = false;
+        options.useSingleCreasePatch = single_crease != 0;
         handle->refiner->RefineAdaptive(options);
     });
 }

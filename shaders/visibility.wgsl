@@ -71,9 +71,9 @@ fn vertex(@location(0) uv: vec2f, @location(1) member: u32, @builtin(instance_in
     clip += clip_direction(tu * push.x + tv * push.y);
     // A quarter of a proxy cell at most; none at an extraordinary vertex, where derivatives vanish or blow up.
     let own = refinement_of(record);
-    let cell = 0.25 * exp2(-f32(max(frame.proxy_level, own) - own));
+    let cell = 0.25 * exp2(-vec2f(max(vec2u(frame.proxy_level), own) - own));
     let speed = max(vec2f(length(p.du), length(p.dv)), vec2f(1e-30));
-    var shift = clamp(push / speed, vec2f(-cell), vec2f(cell));
+    var shift = clamp(push / speed, -cell, cell);
     if is_irregular(record) && all(uv == vec2f(0.0)) {
         shift = vec2f(0.0);
     }

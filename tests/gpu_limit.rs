@@ -161,7 +161,8 @@ fn regular_nets_need_no_mesh() {
             })
         })
         .collect();
-    let patch = |&net: &[DVec3; 16]| PatchNet { level: 0, transition: 0, net: Net::Regular(net), normal: DVec3::ZERO };
+    let patch =
+        |&net: &[DVec3; 16]| PatchNet { levels: [0; 2], transition: 0, net: Net::Regular(net), normal: DVec3::ZERO };
     let patches: Vec<PatchNet> = nets.iter().map(patch).collect();
     let tables = gpu().upload_patches(patches.as_slice()).expect("it fits");
     let uv = parameters(5);

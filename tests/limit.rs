@@ -1,28 +1,12 @@
 //! Properties of the exact limit that need no reference: patches meet, derivatives are derivatives, parameters map.
 
-use catoptric::mesh::{self, SubdivMesh};
+mod common;
+
+use catoptric::mesh;
 use catoptric::patch::PatchKind;
 use catoptric::stam::LimitSurface;
+use common::{angle_deg as angle, meshes};
 use glam::DVec3;
-use std::path::Path;
-
-fn meshes() -> Vec<SubdivMesh> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes");
-    let mut paths: Vec<_> = std::fs::read_dir(folder)
-        .expect("the test meshes are there")
-        .map(|entry| entry.expect("a readable entry").path())
-        .filter(|path| path.extension().is_some_and(|e| e == "obj"))
-        .collect();
-    paths.sort();
-    assert!(paths.len() >= 20, "test meshes are missing");
-    let mut meshes: Vec<_> = paths.iter().map(|path| mesh::read(path).expect("a test mesh is valid")).collect();
-    meshes.push(mesh::sample());
-    meshes
-}
-
-fn angle(a: DVec3, b: DVec3) -> f64 {
-    a.cross(b).length().atan2(a.dot(b)).to_degrees()
-}
 
 /// Every point of a ptex face lies in one patch, and parameters go there and back.
 #[test]
@@ -50,11 +34,11 @@ fn patches_of_a_ptex_face_meet_with_equal_derivatives() {
         let surface = LimitSurface::new(&mesh).expect("it has a surface");
         let unit = surface.diagonal();
         for (i, patch) in surface.patches().iter().enumerate() {
-            let size = 0.5f64.powi(i32::from(patch.depth));
-            let [u0, v0] = patch.origin.map(|x| f64::from(x) * size);
+            let size = patch.depth.map(|depth| 0.5f64.powi(i32::from(depth)));
+            let [u0, v0] = [0, 1].map(|k| f64::from(patch.origin[k]) * size[k]);
             // The lower and left neighbours across this patch's own sides, at its own parameters.
             for t in [0.25, 0.5, 0.8] {
-                for (uv, step) in [([u0 + t * size, v0], [0.0, -1e-12]), ([u0, v0 + t * size], [-1e-12, 0.0])] {
+                for (uv, step) in [([u0 + t * size[0], v0], [0.0, -1e-12]), ([u0, v0 + t * size[1]], [-1e-12, 0.0])] {
                     let beyond = [uv[0] + step[0], uv[1] + step[1]];
                     if beyond[0] < 0.0 || beyond[1] < 0.0 {
                         continue;

@@ -26,13 +26,13 @@ fn the_library_is_the_one_we_checked() {
 fn levels_beyond_ten_are_refused_before_they_corrupt_memory() {
     let cube = mesh("cube");
     for level in [0, 11, 12, 16, u32::MAX] {
-        assert!(refusal(Refiner::adaptive(&cube, level, 2)).contains("level"), "{level}");
+        assert!(refusal(Refiner::adaptive(&cube, level, 2, false)).contains("level"), "{level}");
         assert!(refusal(Refiner::uniform(&cube, level)).contains("level"), "{level}");
         assert!(refusal(Far::new(&cube, level)).contains("isolation must be 1 to 10"), "{level}");
         assert!(refusal(Bfr::new(&cube, (level, 6))).contains("levels must be 1 to 10"), "{level}");
         assert!(refusal(Bfr::new(&cube, (2, level))).contains("levels must be 1 to 10"), "{level}");
     }
-    assert!(refusal(Refiner::adaptive(&cube, 4, 11)).contains("level"));
+    assert!(refusal(Refiner::adaptive(&cube, 4, 11, false)).contains("level"));
 }
 
 #[test]
@@ -40,7 +40,7 @@ fn invalid_meshes_never_reach_opensubdiv() {
     let mut broken = mesh("cube");
     broken.face_vertices[3] = 99;
     for message in [
-        refusal(Refiner::adaptive(&broken, 2, 2)),
+        refusal(Refiner::adaptive(&broken, 2, 2, true)),
         refusal(Refiner::uniform(&broken, 1)),
         refusal(Far::new(&broken, 4)),
         refusal(Bfr::new(&broken, Bfr::DEFAULT_LEVELS)),
@@ -51,7 +51,7 @@ fn invalid_meshes_never_reach_opensubdiv() {
 
 #[test]
 fn limit_masks_need_uniform_refinement() {
-    let refiner = Refiner::adaptive(&mesh("cube"), 3, 3).expect("it refines");
+    let refiner = Refiner::adaptive(&mesh("cube"), 3, 3, false).expect("it refines");
     let points = refiner.interpolate(&mesh("cube").points).expect("it interpolates");
     let last = refiner.vertex_counts()[refiner.level_count() - 1];
     let message = refusal(refiner.limit(&points[points.len() - last..]));

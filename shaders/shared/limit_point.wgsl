@@ -9,7 +9,8 @@ struct LimitPoint {
     normal: vec3f,
 }
 
-// A texel a patch: first texel in `points`; kind + 256 refinement level + 65536 levels of its table; first texel in `scales`; 0.
+// A texel a patch: first texel in `points`; kind (bits 0 to 7), refinement levels along u and v (4 bits each),
+// levels of its table (from bit 16); first texel in `scales`; 0.
 @group(0) @binding(0) var patches: texture_2d<u32>;
 // Rows of 4 points, 3 texels each: the four x, the four y, the four z. A regular patch has 4 rows. A level of an irregular
 // patch has 9: those of the windows at u >= 1 (5), then those of the window at u < 1 (4); after the last level comes
@@ -35,8 +36,8 @@ fn unit_or_zero(v: vec3f) -> vec3f {
     return select(vec3f(0.0), v / size, size > 0.0);
 }
 
-fn refinement_of(record: vec4u) -> u32 {
-    return (record.y >> 8u) & 255u;
+fn refinement_of(record: vec4u) -> vec2u {
+    return vec2u(record.y >> 8u, record.y >> 12u) & vec2u(15u);
 }
 
 fn is_irregular(record: vec4u) -> bool {

@@ -86,7 +86,7 @@ fn collect(mesh: &SubdivMesh, surface: &LimitSurface, control: &Level) -> Info {
         *info.face_sizes.entry(size).or_default() += 1;
     }
     for patch in surface.patches() {
-        *info.patch_depths.entry(patch.depth).or_default() += 1;
+        *info.patch_depths.entry(patch.depth[0].max(patch.depth[1])).or_default() += 1;
     }
     for kind in PatchKind::ALL {
         info.patches.insert(kind.name(), surface.patches().iter().filter(|patch| patch.kind == kind).count());

@@ -9,6 +9,7 @@
 
 use super::NO_PATCH;
 use super::records::ProxyVertex;
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// Vertices that an instance should have at least.
@@ -42,22 +43,19 @@ pub(super) struct Draw {
 
 impl Proxy {
     /// Tessellation of level `level` of patches with these refinement levels and transition bits.
-    pub fn new(cells: &[(u8, u8)], level: u32) -> Proxy {
-        // Fans 0 to 15 (0: the plain quad), then grids of 2, 4, ... 2^level parts.
-        let pattern = |&(own, transition): &(u8, u8)| match level.saturating_sub(u32::from(own)) {
-            0 => usize::from(transition & 15),
-            finer => 15 + finer as usize,
-        };
-        let mut users: Vec<Vec<u32>> = vec![Vec::new(); 16 + level as usize];
-        for (patch, cell) in cells.iter().enumerate() {
-            users[pattern(cell)].push(patch as u32);
+    pub fn new(cells: &[([u8; 2], u8)], level: u32) -> Proxy {
+        // Patterns by parts along u and v (powers of two) and, for a single part, by the edges with a middle vertex.
+        let mut users: BTreeMap<([u32; 2], u8), Vec<u32>> = BTreeMap::new();
+        for (patch, &(own, transition)) in cells.iter().enumerate() {
+            let finer = own.map(|own| level.saturating_sub(u32::from(own)));
+            let transition = if finer == [0, 0] { transition & 15 } else { 0 };
+            users.entry((finer, transition)).or_default().push(patch as u32);
         }
         let mut proxy = Proxy::default();
-        for (pattern, patches) in users.into_iter().enumerate().filter(|(_, patches)| !patches.is_empty()) {
-            let (vertices, indices) = match pattern {
-                0 => grid(1),
-                1..16 => fan(pattern as u8),
-                _ => grid(1 << (pattern - 15)),
+        for ((finer, transition), patches) in users {
+            let (vertices, indices) = match transition {
+                0 => grid(finer.map(|n| 1 << n)),
+                _ => fan(transition),
             };
             proxy.add(&vertices, &indices, &patches);
         }
@@ -85,12 +83,14 @@ impl Proxy {
     }
 }
 
-/// The unit square in parts x parts quads.
-fn grid(parts: u32) -> (Vec<[f32; 2]>, Vec<u32>) {
-    let row = parts + 1;
-    let vertices = (0..row * row).map(|k| [k % row, k / row].map(|x| x as f32 / parts as f32)).collect();
-    let quads = (0..parts * parts).map(|k| k / parts * row + k % parts);
-    (vertices, quads.flat_map(|a| [a, a + 1, a + row + 1, a, a + row + 1, a + row]).collect())
+/// The unit square in quads, `parts` along u and v.
+fn grid(parts: [u32; 2]) -> (Vec<[f32; 2]>, Vec<u32>) {
+    let [columns, rows] = parts;
+    let row = columns + 1;
+    let vertex = |k: u32| [(k % row) as f32 / columns as f32, (k / row) as f32 / rows as f32];
+    let quads = (0..columns * rows).map(|k| k / columns * row + k % columns);
+    let indices = quads.flat_map(|a| [a, a + 1, a + row + 1, a, a + row + 1, a + row]).collect();
+    ((0..row * (rows + 1)).map(vertex).collect(), indices)
 }
 
 /// The unit square as a fan round its middle, with an extra vertex on every edge whose bit is set (bit 0: v = 0, 1: u = 1,
@@ -121,7 +121,7 @@ mod tests {
 
     #[test]
     fn patterns_cover_the_square_once() {
-        for (vertices, indices) in (1..16).map(fan).chain([1, 2, 8, 16].map(grid)) {
+        for (vertices, indices) in (1..16).map(fan).chain([[1, 1], [2, 2], [8, 2], [16, 16]].map(grid)) {
             let areas: Vec<f32> = indices.chunks_exact(3).map(|t| area(&vertices, t)).collect();
             assert!(areas.iter().all(|&a| a > 0.0));
             assert!((areas.iter().sum::<f32>() - 2.0).abs() < 1e-5);
@@ -130,7 +130,7 @@ mod tests {
 
     #[test]
     fn every_patch_is_drawn_once() {
-        let cells: Vec<(u8, u8)> = (0..5000u32).map(|k| ((k % 6) as u8, (k % 16) as u8)).collect();
+        let cells: Vec<_> = (0..5000u32).map(|k| ([(k % 6) as u8, (k % 5) as u8], (k % 16) as u8)).collect();
         let proxy = Proxy::new(&cells, 3);
         let mut order = proxy.order.clone();
         order.retain(|&patch| patch != NO_PATCH);

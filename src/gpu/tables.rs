@@ -34,8 +34,8 @@ const WINDOW_ROWS: [usize; 9] = [0, 5, 10, 15, 20, 4, 9, 14, 19];
 /// One patch, as the tables want it.
 #[derive(Debug, Clone)]
 pub struct PatchNet {
-    /// Refinement level, as [`Patch::level`](crate::patch::Patch::level).
-    pub level: u8,
+    /// Refinement levels along u and v, as [`Patch::levels`](crate::patch::Patch::levels).
+    pub levels: [u8; 2],
     /// As [`Patch::transition`](crate::patch::Patch::transition).
     pub transition: u8,
     /// Control net, with 1 to [`TABLE_LEVELS`] levels where it is irregular.
@@ -71,7 +71,7 @@ impl PatchSource for LimitSurface {
             false => DVec3::ZERO,
         };
         let record = self.patches()[patch];
-        PatchNet { level: record.level, transition: record.transition, net: self.net(patch, TABLE_LEVELS), normal }
+        PatchNet { levels: record.levels(), transition: record.transition, net: self.net(patch, TABLE_LEVELS), normal }
     }
 
     fn bounds(&self) -> [DVec3; 2] {
@@ -110,7 +110,7 @@ struct Packed {
     points: Vec<[f32; 4]>,
     scales: Vec<[f32; 2]>,
     origins: Vec<DVec3>,
-    cells: Vec<(u8, u8)>,
+    cells: Vec<([u8; 2], u8)>,
 }
 
 /// The tables of a surface on the adapter.
@@ -121,8 +121,8 @@ pub struct Tables {
     scales: wgpu::Texture,
     /// Origin of every patch, world space.
     pub(super) origins: Vec<DVec3>,
-    /// Refinement level and transition bits of every patch.
-    pub(super) cells: Vec<(u8, u8)>,
+    /// Refinement levels and transition bits of every patch.
+    pub(super) cells: Vec<([u8; 2], u8)>,
     bounds: [DVec3; 2],
     size: u64,
     unit: f64,
@@ -146,7 +146,7 @@ impl Tables {
 
     /// Area of the patches in quad faces of the control mesh.
     pub fn faces(&self) -> f64 {
-        self.cells.iter().map(|&(level, _)| 0.25f64.powi(i32::from(level))).sum()
+        self.cells.iter().map(|&([u, v], _)| 0.5f64.powi(i32::from(u) + i32::from(v))).sum()
     }
 
     /// Box round the surface.
@@ -194,7 +194,7 @@ pub(super) fn upload<S: PatchSource + ?Sized>(device: &Device, source: &S) -> Re
 struct Placed {
     patch: usize,
     record: [u32; 4],
-    cell: (u8, u8),
+    cell: ([u8; 2], u8),
     origin: DVec3,
     lambda: Option<f64>,
 }
@@ -234,7 +234,7 @@ fn scale(lambda: f64, m: i32) -> [f32; 2] {
 
 /// Writes the texels of one patch, which start at `first`.
 fn place(patch_net: PatchNet, patch: usize, first: usize, texels: &mut [[f32; 4]], unit: f64) -> Placed {
-    let PatchNet { level, transition, net, normal } = patch_net;
+    let PatchNet { levels: cell, transition, net, normal } = patch_net;
     let mut at = 0;
     let mut row = |points: &[DVec3]| {
         let local: [DVec3; 4] = std::array::from_fn(|k| points[k] / unit);
@@ -257,6 +257,6 @@ fn place(patch_net: PatchNet, patch: usize, first: usize, texels: &mut [[f32; 4]
             (limit, KIND_IRREGULAR, stored as u32, Some(lambda))
         }
     };
-    let record = [first as u32, kind | u32::from(level) << 8 | levels << 16, 0, 0];
-    Placed { patch, record, cell: (level, transition), origin, lambda }
+    let record = [first as u32, kind | u32::from(cell[0]) << 8 | u32::from(cell[1]) << 12 | levels << 16, 0, 0];
+    Placed { patch, record, cell: (cell, transition), origin, lambda }
 }

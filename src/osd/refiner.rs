@@ -100,16 +100,17 @@ impl Drop for Refiner {
 }
 
 impl Refiner {
-    /// Refines round every feature: semi-sharp ones to `isolation`, all others to `secondary` levels.
+    /// Refines round every feature: semi-sharp ones to `isolation`, all others to `secondary` levels. With
+    /// `single_crease`, faces along a regular crease of constant sharpness stay whole.
     ///
     /// # Errors
     /// The mesh is not valid, `isolation` is not in 1..=10, or OpenSubdiv reports an error.
-    pub fn adaptive(mesh: &SubdivMesh, isolation: u32, secondary: u32) -> Result<Self, Error> {
+    pub fn adaptive(mesh: &SubdivMesh, isolation: u32, secondary: u32, single_crease: bool) -> Result<Self, Error> {
         Self::check_level(isolation, 1)?;
         Self::check_level(secondary, 0)?;
         // SAFETY: the handle is live for the call.
         Self::new(mesh, |handle| unsafe {
-            raw::osd_refiner_refine_adaptive(handle, isolation as i32, secondary as i32)
+            raw::osd_refiner_refine_adaptive(handle, isolation as i32, secondary as i32, i32::from(single_crease))
         })
     }
 

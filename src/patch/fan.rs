@@ -17,8 +17,8 @@ pub(super) struct Fan {
     pub closed: bool,
     /// Vertex at the far end of each spoke.
     pub spokes: Vec<usize>,
-    /// Whether each spoke is infinitely sharp.
-    pub sharp: Vec<bool>,
+    /// Sharpness of each spoke; infinite at the ends of an open fan.
+    pub sharpness: Vec<f32>,
     /// Opposite corner of each face.
     pub opposites: Vec<usize>,
     /// The face that the fan was made for.
@@ -79,13 +79,13 @@ impl Fan {
             vertex,
             rule: Some(rule),
             spokes: std::mem::take(&mut self.spokes),
-            sharp: std::mem::take(&mut self.sharp),
+            sharpness: std::mem::take(&mut self.sharpness),
             opposites: std::mem::take(&mut self.opposites),
             quads: true,
             ..Self::default()
         };
         self.spokes.clear();
-        self.sharp.clear();
+        self.sharpness.clear();
         self.opposites.clear();
 
         let mut first = own;
@@ -113,20 +113,20 @@ impl Fan {
                 None => {
                     let incoming = at.step(level, false);
                     self.spokes.push(level.face_vertices[incoming.offset] as usize);
-                    self.sharp.push(true);
+                    self.sharpness.push(INFINITE_SHARPNESS);
                     break;
                 }
             }
         }
         if !self.closed {
-            self.sharp[0] = true;
+            self.sharpness[0] = INFINITE_SHARPNESS;
         }
     }
 
     fn push_spoke(&mut self, level: &Level, at: Corner) {
         self.spokes.push(level.face_vertices[at.step(level, true).offset] as usize);
         let edge = level.face_edges[at.offset] as usize;
-        self.sharp.push(level.edge_sharpness[edge] >= INFINITE_SHARPNESS);
+        self.sharpness.push(level.edge_sharpness[edge]);
     }
 
     /// Number of faces.
@@ -143,6 +143,17 @@ impl Fan {
                 Some(Rule::Corner) => !self.closed && self.faces() == 1,
                 _ => false,
             }
+    }
+
+    /// The fan of a vertex in the middle of a regular crease of constant sharpness: the own face's edge `along` (0: its
+    /// first spoke, 1: its second) and the spoke opposite to it, and no other feature.
+    pub fn continues_crease(&self, along: usize) -> bool {
+        let expected = |spoke: usize| if spoke % 2 == along { self.sharpness[along] } else { 0.0 };
+        self.quads
+            && self.closed
+            && self.faces() == 4
+            && self.rule == Some(Rule::Crease)
+            && (0..4).all(|spoke| self.sharpness[spoke] == expected(spoke))
     }
 
     /// Spoke `offset` places counter-clockwise of the own face's first one; `None` beyond an open end.

@@ -6,9 +6,12 @@
 //! everything about the patch but its points. Smooth extraordinary vertices, darts, crease and corner sectors all end
 //! at level 2 at the latest; only finite sharpness takes ceil(sharpness) levels.
 
+mod adjacency;
 mod fan;
+mod strips;
 mod tree;
 
+pub use adjacency::{Adjacency, Neighbour};
 pub use tree::PHANTOM;
 pub(crate) use tree::slot;
 
@@ -81,13 +84,14 @@ impl PatchKind {
 pub struct Patch {
     /// Ptex face that the patch lies in.
     pub ptex: u32,
-    /// Depth in the quadtree of the ptex face: the patch spans 2^-depth in u and v.
-    pub depth: u8,
-    /// Refinement level: `depth`, and one more in the sub-faces of n-gons. Edges of patches of one level are as long.
-    pub level: u8,
-    /// Position in the quadtree, in units of 2^-depth.
+    /// Depth in u and in v: the patch spans 2^-depth of the ptex face each way. They differ for the strips along a
+    /// semi-sharp crease.
+    pub depth: [u8; 2],
+    /// The ptex face is a quadrant of an n-gon: its sides are as long as those of quads one level deeper.
+    pub quadrant: bool,
+    /// Position of its cell in the ptex face, in units of 2^-depth.
     pub origin: [u16; 2],
-    /// Quarter turns: local (0,0) lies at corner `rotation` of the quadtree cell (corners (0,0), (1,0), (1,1), (0,1)).
+    /// Quarter turns: local (0,0) lies at corner `rotation` of the cell (corners (0,0), (1,0), (1,1), (0,1)).
     pub rotation: u8,
     /// Rules.
     pub kind: PatchKind,
@@ -98,14 +102,20 @@ pub struct Patch {
 impl Patch {
     /// Patch-local parameters of a point of the ptex face that lies in this patch.
     pub fn to_local(&self, [u, v]: [f64; 2]) -> [f64; 2] {
-        let scale = f64::from(1u32 << self.depth);
-        let [u, v] = [u * scale - f64::from(self.origin[0]), v * scale - f64::from(self.origin[1])];
-        match self.rotation {
-            0 => [u, v],
-            1 => [v, 1.0 - u],
-            2 => [1.0 - u, 1.0 - v],
-            _ => [1.0 - v, u],
-        }
+        let scale = self.scale();
+        let [u, v] = [u * scale[0] - f64::from(self.origin[0]), v * scale[1] - f64::from(self.origin[1])];
+        turn_in(self.rotation, [u, v])
+    }
+
+    /// Local parameters that one ptex parameter spans, for each ptex parameter: 2^depth.
+    pub fn scale(&self) -> [f64; 2] {
+        self.depth.map(|depth| f64::from(1u32 << depth))
+    }
+
+    /// Refinement levels along the local u and v: edges of one level are as long, whatever their ptex face.
+    pub fn levels(&self) -> [u8; 2] {
+        let [u, v] = self.depth.map(|depth| depth + u8::from(self.quadrant));
+        if self.rotation.is_multiple_of(2) { [u, v] } else { [v, u] }
     }
 
     /// Ptex parameters of a patch-local point.
@@ -116,8 +126,18 @@ impl Patch {
             2 => [1.0 - s, 1.0 - t],
             _ => [t, 1.0 - s],
         };
-        let scale = f64::from(1u32 << self.depth);
-        [(u + f64::from(self.origin[0])) / scale, (v + f64::from(self.origin[1])) / scale]
+        let scale = self.scale();
+        [(u + f64::from(self.origin[0])) / scale[0], (v + f64::from(self.origin[1])) / scale[1]]
+    }
+}
+
+/// Parameters of a cell in the frame whose (0,0) is the cell's corner `rotation`.
+fn turn_in(rotation: u8, [u, v]: [f64; 2]) -> [f64; 2] {
+    match rotation {
+        0 => [u, v],
+        1 => [v, 1.0 - u],
+        2 => [1.0 - u, 1.0 - v],
+        _ => [1.0 - v, u],
     }
 }
 
@@ -199,7 +219,21 @@ enum Node {
     Leaf(u32),
     /// Four children, at corners (0,0), (1,0), (1,1), (0,1).
     Split(u32),
+    /// Strips along a semi-sharp crease.
+    Strips(u32),
 }
+
+/// The strips of a cell along its edge `rotation`, across the cell's local v: patch `first` + i spans v in
+/// [2^-(i+1), 2^-i], but the last one [0, 2^-i].
+#[derive(Debug, Clone, Copy)]
+struct Strips {
+    first: u32,
+    count: u8,
+    rotation: u8,
+}
+
+/// Rows of a 4x4 net as sums of the four rows that its support lists.
+pub type RowWeights = [[f64; 4]; 4];
 
 /// Where the control points of a patch are listed.
 #[derive(Debug, Clone, Copy)]
@@ -207,6 +241,8 @@ struct Support {
     first: u32,
     /// Class of an irregular patch.
     class: Option<u32>,
+    /// Row weights of a strip.
+    rows: Option<u32>,
 }
 
 /// The patches of a mesh and the quadtrees that find them. Topology only: control points may move without it changing.
@@ -218,6 +254,9 @@ pub struct Patches {
     classes: Vec<RingClass>,
     roots: Vec<Node>,
     splits: Vec<[Node; 4]>,
+    strips: Vec<Strips>,
+    row_weights: Vec<RowWeights>,
+    ptex_edges: adjacency::PtexEdges,
 }
 
 impl Patches {
@@ -226,8 +265,17 @@ impl Patches {
     /// # Errors
     /// OpenSubdiv refuses the mesh, or a face stays without a closed form.
     pub fn new(mesh: &SubdivMesh) -> Result<(Self, Refiner), PatchError> {
-        let refiner = Refiner::adaptive(mesh, isolation(mesh), RINGS_STAND_ALONE)?;
-        Ok((tree::build(&refiner)?, refiner))
+        let isolation = isolation(mesh);
+        // Along a single crease OpenSubdiv need not refine: strips have a closed form. Should it call a crease single
+        // that we do not, everything is refined.
+        let refiner = Refiner::adaptive(mesh, isolation, RINGS_STAND_ALONE, true)?;
+        match tree::build(&refiner) {
+            Err(PatchError::NotRefined { .. }) => {
+                let refiner = Refiner::adaptive(mesh, isolation, RINGS_STAND_ALONE, false)?;
+                Ok((tree::build(&refiner)?, refiner))
+            }
+            patches => Ok((patches?, refiner)),
+        }
     }
 
     /// All patches, in ptex order.
@@ -248,9 +296,14 @@ impl Patches {
     /// Refined vertices that control a patch: for a regular one the 4x4 net, u fastest, [`PHANTOM`] beyond sharp edges;
     /// else the support of its class.
     pub fn support(&self, patch: usize) -> &[u32] {
-        let Support { first, class } = self.supports[patch];
+        let Support { first, class, .. } = self.supports[patch];
         let length = class.map_or(16, |class| self.classes[class as usize].support());
         &self.vertices[first as usize..first as usize + length]
+    }
+
+    /// How the rows (v = const) of a strip's net follow from the four rows of its support; `None` for other patches.
+    pub fn row_weights(&self, patch: usize) -> Option<&RowWeights> {
+        self.supports[patch].rows.map(|rows| &self.row_weights[rows as usize])
     }
 
     /// Number of ptex faces, holes included.
@@ -265,12 +318,15 @@ impl Patches {
     pub fn locate(&self, ptex: u32, uv: [f64; 2]) -> Option<(usize, [f64; 2])> {
         let mut node = self.roots[ptex as usize];
         let [mut u, mut v] = uv;
-        loop {
+        let patch = loop {
             match node {
-                Node::Hole => return None,
-                Node::Leaf(patch) => {
-                    let local = self.patches[patch as usize].to_local(uv);
-                    return Some((patch as usize, local.map(|x| x.clamp(0.0, 1.0))));
+                Node::Hole => break None,
+                Node::Leaf(patch) => break Some(patch),
+                Node::Strips(strips) => {
+                    let Strips { first, count, rotation } = self.strips[strips as usize];
+                    let [_, across] = turn_in(rotation, [u, v]);
+                    let strip = (1..u32::from(count)).find(|&i| across >= 0.5f64.powi(i as i32));
+                    break Some(first + strip.map_or(u32::from(count), |i| i) - 1);
                 }
                 Node::Split(children) => {
                     let [right, up] = [u >= 0.5, v >= 0.5];
@@ -280,7 +336,9 @@ impl Patches {
                     node = self.splits[children as usize][corner];
                 }
             }
-        }
+        }?;
+        let local = self.patches[patch as usize].to_local(uv);
+        Some((patch as usize, local.map(|x| x.clamp(0.0, 1.0))))
     }
 }
 

@@ -1,7 +1,9 @@
 //! Finds the patches: walks the refined levels and stops at the first face whose limit is known in closed form.
 
+use super::adjacency::PtexEdges;
 use super::fan::Fan;
-use super::{MAX_VALENCE, Node, Patch, PatchError, PatchKind, Patches, RingClass, Support, Tip};
+use super::strips;
+use super::{MAX_VALENCE, Node, Patch, PatchError, PatchKind, Patches, RingClass, Strips, Support, Tip};
 use crate::osd::{INFINITE_SHARPNESS, Level, Refiner, Rule};
 use std::collections::HashMap;
 
@@ -23,9 +25,11 @@ struct Walk {
     /// For each level and vertex: finite sharpness on it or on an edge of it, so its rules still change.
     restless: Vec<Vec<bool>>,
     states: Vec<Vec<State>>,
-    /// Level and face of each patch.
-    places: Vec<(usize, usize)>,
+    /// Level and face of each patch, and which of its local edges lie on the face's own (a bit each).
+    places: Vec<(usize, usize, u8)>,
     class_indices: HashMap<RingClass, u32>,
+    /// First row weights of a sharpness.
+    row_indices: HashMap<u32, u32>,
     fans: [Fan; 4],
     out: Patches,
 }
@@ -55,12 +59,14 @@ pub(super) fn build(refiner: &Refiner) -> Result<Patches, PatchError> {
         states: levels.iter().map(|level| vec![State::Unvisited; level.face_count()]).collect(),
         places: Vec::new(),
         class_indices: HashMap::new(),
+        row_indices: HashMap::new(),
         fans: Default::default(),
         out: Patches::default(),
         levels,
     };
     walk.roots()?;
     walk.mark_transitions();
+    walk.out.ptex_edges = PtexEdges::new(&walk.levels[0]);
     Ok(walk.out)
 }
 
@@ -130,9 +136,12 @@ impl Walk {
         if let Some(fan) = self.fans.iter().find(|fan| fan.faces() > MAX_VALENCE) {
             return Err(PatchError::Valence(fan.faces()));
         }
+        if let Some(strips) = self.strips(level, face, cell) {
+            return Ok(strips);
+        }
         if let Some(patch) = leaf {
             self.states[level][face] = State::Leaf;
-            self.places.push((level, face));
+            self.places.push((level, face, 0b1111));
             self.out.patches.push(patch);
             return Ok(Node::Leaf(self.out.patches.len() as u32 - 1));
         }
@@ -166,13 +175,75 @@ impl Walk {
         self.out.supports.push(support);
         Some(Patch {
             ptex: cell.ptex,
-            depth: cell.depth,
-            level: level as u8,
+            depth: [cell.depth; 2],
+            quadrant: level > usize::from(cell.depth),
             origin: cell.origin,
             rotation: rotation as u8,
             kind,
             transition: 0,
         })
+    }
+
+    /// The strips of a face whose only feature is one semi-sharp crease edge, constant beyond both its ends.
+    fn strips(&mut self, level: usize, face: usize, cell: Cell) -> Option<Node> {
+        let topology = &self.levels[level];
+        let corners = topology.corners(face);
+        let sharpness = |edge: usize| topology.edge_sharpness[topology.face_edges[corners.start + edge] as usize];
+        let sharp: Vec<usize> = (0..corners.len()).filter(|&edge| sharpness(edge) > 0.0).collect();
+        let &[edge] = &sharp[..] else { return None };
+        let crease = sharpness(edge);
+        let vertex = |corner: usize| topology.face_vertices[corners.start + (edge + corner) % 4] as usize;
+        let restless = |corner: usize| self.restless[level][vertex(corner)];
+        if corners.len() != 4 || crease >= INFINITE_SHARPNESS || restless(2) || restless(3) {
+            return None;
+        }
+        if [0, 1].into_iter().any(|corner| topology.vertex_sharpness[vertex(corner)] > 0.0) {
+            return None;
+        }
+        for (corner, fan) in self.fans.iter_mut().enumerate() {
+            fan.gather(topology, face, corner);
+        }
+        let fan = |corner: usize| &self.fans[(edge + corner) % 4];
+        let smooth = |corner: usize| fan(corner).is_regular() && fan(corner).rule == Some(Rule::Smooth);
+        if !(fan(0).continues_crease(0) && fan(1).continues_crease(1) && smooth(2) && smooth(3)) {
+            return None;
+        }
+        self.states[level][face] = State::Leaf;
+        Some(self.push_strips(level, face, cell, edge, crease))
+    }
+
+    fn push_strips(&mut self, level: usize, face: usize, cell: Cell, edge: usize, crease: f32) -> Node {
+        let support = self.support(level, PatchKind::Regular, edge);
+        let first_patch = self.out.patches.len() as u32;
+        let first_rows = *self.row_indices.entry(crease.to_bits()).or_insert_with(|| {
+            self.out.row_weights.extend(strips::stack(crease));
+            (self.out.row_weights.len() - crease.ceil() as usize - 1) as u32
+        });
+        let count = crease.ceil() as u8 + 1;
+        for strip in 0..count {
+            let last = strip + 1 == count;
+            let finer = if last { strip } else { strip + 1 };
+            // Local v runs across the crease: along the cell's v or u, in its direction or against it.
+            let (axis, against) = [(1, false), (0, true), (1, true), (0, false)][edge];
+            let index = u16::from(!last);
+            let index = if against { (1 << finer) - 1 - index } else { index };
+            let (mut depth, mut origin) = ([cell.depth; 2], cell.origin);
+            depth[axis] += finer;
+            origin[axis] = (origin[axis] << finer) + index;
+            self.places.push((level, face, u8::from(strip == 0) << 2 | u8::from(last)));
+            self.out.supports.push(Support { rows: Some(first_rows + u32::from(strip)), ..support });
+            self.out.patches.push(Patch {
+                ptex: cell.ptex,
+                depth,
+                quadrant: level > usize::from(cell.depth),
+                origin,
+                rotation: edge as u8,
+                kind: PatchKind::Regular,
+                transition: 0,
+            });
+        }
+        self.out.strips.push(Strips { first: first_patch, count, rotation: edge as u8 });
+        Node::Strips(self.out.strips.len() as u32 - 1)
     }
 
     /// Whether the other three corners carry no feature except the spokes of the extraordinary vertex, so that the
@@ -206,7 +277,7 @@ impl Walk {
         let first = self.out.vertices.len() as u32;
         if kind == PatchKind::Regular {
             self.out.vertices.extend(grid);
-            return Support { first, class: None };
+            return Support { first, class: None, rows: None };
         }
         let fan = &self.fans[rotation];
         let class = RingClass::new(fan);
@@ -219,18 +290,18 @@ impl Walk {
         if index == next {
             self.out.classes.push(class);
         }
-        Support { first, class: Some(index) }
+        Support { first, class: Some(index), rows: None }
     }
 
     fn mark_transitions(&mut self) {
-        for (patch, &(level, face)) in self.out.patches.iter_mut().zip(&self.places) {
+        for (patch, &(level, face, edges)) in self.out.patches.iter_mut().zip(&self.places) {
             let topology = &self.levels[level];
             for (edge, offset) in topology.corners(face).enumerate() {
                 let faces = topology.edge_faces[topology.face_edges[offset] as usize];
                 let neighbour = if faces[0] == face as i32 { faces[1] } else { faces[0] };
                 let split = usize::try_from(neighbour).is_ok_and(|f| self.states[level][f] == State::Split);
                 let local = (edge + 4 - patch.rotation as usize) % 4;
-                patch.transition |= u8::from(split) << local;
+                patch.transition |= (u8::from(split) << local) & edges;
             }
         }
     }
@@ -282,7 +353,7 @@ impl RingClass {
             Some(Rule::Corner) => Tip::Corner,
             _ => Tip::Smooth,
         };
-        let dart = fan.closed.then(|| fan.sharp.iter().position(|&sharp| sharp)).flatten();
+        let dart = fan.closed.then(|| fan.sharpness.iter().position(|&s| s >= INFINITE_SHARPNESS)).flatten();
         Self {
             faces: fan.faces() as u16,
             closed: fan.closed,

@@ -3,7 +3,7 @@
 use super::class::{ClassTable, WINDOW_POINTS};
 use super::{Jet, Window, weights};
 use crate::mesh::SubdivMesh;
-use crate::patch::{PHANTOM, Patch, PatchError, PatchKind, Patches, RingClass, slot};
+use crate::patch::{Adjacency, PHANTOM, Patch, PatchError, PatchKind, Patches, RingClass, slot};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -95,6 +95,11 @@ impl LimitSurface {
         self.patches.locate(ptex, uv)
     }
 
+    /// What lies across every edge of every patch.
+    pub fn adjacency(&self) -> Adjacency {
+        Adjacency::new(&self.patches)
+    }
+
     /// The kind of a patch.
     pub fn kind(&self, patch: usize) -> PatchKind {
         self.patches()[patch].kind
@@ -125,7 +130,8 @@ impl LimitSurface {
                 (-1..=2).for_each(|j| mirror((i, j), (step, 0)));
             }
         }
-        net
+        let Some(rows) = self.patches.row_weights(patch) else { return net };
+        std::array::from_fn(|k| (0..4).map(|row| rows[k / 4][row] * net[4 * row + k % 4]).sum())
     }
 
     /// Control points of an irregular patch relative to s0, and s0.
@@ -198,8 +204,8 @@ impl Patch {
             2 => (-jet.du, -jet.dv),
             _ => (jet.dv, -jet.du),
         };
-        let scale = f64::from(1u32 << self.depth);
-        Jet { du: scale * du, dv: scale * dv, ..jet }
+        let scale = self.scale();
+        Jet { du: scale[0] * du, dv: scale[1] * dv, ..jet }
     }
 }
 
