@@ -72,6 +72,8 @@ impl Modes {
     pub fn of(class: RingClass) -> Self {
         let faces = f64::from(class.faces);
         match (class.closed, class.tip, class.sharp_spoke) {
+            // Two faces: the eigenvalues 1/4, 1/4 and -1/4 make normals alternate from level to level for ever.
+            (true, Tip::Smooth, None) if class.faces == 2 => Self { lambda: 0.25, tangents: None },
             (true, Tip::Smooth, None) => {
                 let angle = TAU / faces;
                 let tangents = [0.0, 0.25 * TAU].map(|phase| mode(class, angle, |i| (i as f64 * angle - phase).cos()));
