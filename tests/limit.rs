@@ -202,7 +202,9 @@ fn the_vertex_is_the_limit_of_its_patch() {
             let near = surface.evaluate(i, [1e-9, 1e-9]);
             assert!(vertex.position.distance(near.position) < 1e-4 * surface.diagonal(), "{} {i}", mesh.name);
             assert!(vertex.du.is_finite() && vertex.dv.is_finite() && near.normal.is_finite());
-            if patch.kind == PatchKind::Smooth && vertex.normal != DVec3::ZERO {
+            let class = surface.classes()[surface.class(i).expect("an irregular patch has a class")];
+            // Towards a pole of 40 faces the normal hardly turns in 30 levels: the ratio is 0.99 (0.6473 / 0.6527).
+            if patch.kind == PatchKind::Smooth && class.faces <= 12 && vertex.normal != DVec3::ZERO {
                 // 30 levels in, the ratio of the next eigenvalue to lambda (0.82 at most for valence 8) is below 3e-3.
                 let turned = angle(vertex.normal, near.normal);
                 assert!(turned < 0.5, "{} patch {i}: {turned} degrees", mesh.name);
