@@ -22,13 +22,22 @@ struct Sample {
     v: f64,
 }
 
+impl Sample {
+    /// The parameters as evaluators take them: so close to 0 that exponents end, they count as 0, which moves no point
+    /// by as much as a rounding.
+    fn uv(self) -> [f64; 2] {
+        const LEAST: f64 = 1e-300;
+        [self.u, self.v].map(|x| if x < LEAST { 0.0 } else { x })
+    }
+}
+
 pub(super) fn run(args: &EvalArgs) -> Result<(), Failure> {
     args.output.as_deref().map_or(Ok(()), check_writable)?;
     let mesh = load(args.mesh.as_deref())?;
     let surface = LimitSurface::new(&mesh).map_err(|e| Failure::of(&mesh, e))?;
     let samples = read(&args.samples, surface.ptex_count())?;
     let jets = match args.backend {
-        Backend::Cpu => samples.par_iter().map(|s| Some(surface.evaluate_ptex(s.face, [s.u, s.v])?.1)).collect(),
+        Backend::Cpu => samples.par_iter().map(|s| Some(surface.evaluate_ptex(s.face, s.uv())?.1)).collect(),
         Backend::Gpu => on_gpu(&surface, &samples)?,
         Backend::Osd => by_opensubdiv(&mesh, &samples)?,
     };
@@ -84,7 +93,7 @@ fn line_of(text: &[u8], start: usize) -> u64 {
 fn on_gpu(surface: &LimitSurface, samples: &[Sample]) -> Result<Vec<Option<Jet>>, Failure> {
     let gpu = Gpu::new()?;
     let tables = gpu.upload(surface)?;
-    let places: Vec<_> = samples.iter().map(|s| surface.locate(s.face, [s.u, s.v])).collect();
+    let places: Vec<_> = samples.iter().map(|s| surface.locate(s.face, s.uv())).collect();
     let requests: Vec<_> = places
         .iter()
         .flatten()
@@ -120,7 +129,7 @@ fn table(surface: &LimitSurface, samples: &[Sample], jets: &[Option<Jet>]) -> Ve
     let mut out = HEADER.join(",");
     for (sample, jet) in samples.iter().zip(jets) {
         out += &format!("\n{},{},{}", sample.face, shortest(sample.u), shortest(sample.v));
-        let kind = surface.locate(sample.face, [sample.u, sample.v]).map(|(patch, _)| surface.kind(patch).name());
+        let kind = surface.locate(sample.face, sample.uv()).map(|(patch, _)| surface.kind(patch).name());
         match (jet, kind) {
             (Some(jet), Some(kind)) => {
                 for x in [jet.position, jet.du, jet.dv, jet.normal].iter().flat_map(|p| p.to_array()) {
