@@ -219,6 +219,19 @@ mod tests {
     }
 
     #[test]
+    fn percentiles_cap_the_largest() {
+        let key = Key { tier: "fragment", ..KEY };
+        let mut bins = Bins::default();
+        for (error, failed) in [(50.0, 0), (101.0, 1), (f64::NAN, 2)] {
+            let normal = Normal::Judged(Check { error, allowed: 1.0 });
+            let position = Check { error: 0.0, allowed: 1.0 };
+            let sample = Sample { face: 0, u: 0.0, v: 0.0 };
+            bins.add(key, sample, Difference { position, normal, derivative: None });
+            assert_eq!(bins.bins[&key].failed, failed);
+        }
+    }
+
+    #[test]
     fn no_normal_is_as_wrong_as_the_opposite_one() {
         for ours in [DVec3::ZERO, DVec3::NAN, DVec3::NEG_Z] {
             assert_eq!(angle_deg(ours, DVec3::Z), 180.0);

@@ -172,6 +172,23 @@ mod tests {
         }
     }
 
+    /// A face that one side calls a hole and the other does not fails, either way round.
+    #[test]
+    fn disagreement_about_holes_fails() {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes/cube.obj");
+        let whole = mesh::read(&path).expect("a test mesh");
+        let holed = SubdivMesh { holes: vec![2], ..whole.clone() };
+        let gpu = Gpu::new().expect("the fragment tier needs an adapter");
+        for (theirs, ours) in [(&whole, &holed), (&holed, &whole)] {
+            let surface = LimitSurface::new(ours).expect("the mesh is valid");
+            let subject = Subject { mesh: theirs, surface: &surface, rounding: Rounding::of(theirs), ours: &|jet| jet };
+            let report = MeshReport::new(theirs, &surface, tiers(&subject, &gpu, [16, 16]).expect("it runs"));
+            let failed = |tier| report.tiers.iter().filter(|row| row.tier == tier).map(|row| row.failed).sum::<usize>();
+            assert!(failed("dyadic") >= 25, "{report}");
+            assert!(!report.pass);
+        }
+    }
+
     /// Where the reference is known to be wrong, ours is not free: a gross error fails there too.
     #[test]
     fn gross_errors_fail_where_the_reference_is_wrong() {
