@@ -36,7 +36,7 @@ pub enum PatchError {
         face: usize,
     },
     /// The classes of one vertex take memory with the square of its valence (300 MB at the limit).
-    #[error("a vertex where {0} faces meet; at most {MAX_VALENCE} are supported: split the vertex")]
+    #[error("a face of {0} corners or a vertex of valence {0}; at most {MAX_VALENCE} are supported: split it")]
     Valence(usize),
     /// OpenSubdiv numbered child faces in an order we do not know.
     #[error("face {face} of level {level}: unexpected order of its child faces: please report this mesh")]
