@@ -232,7 +232,7 @@ mod tests {
             let grid = table.level_points(level, &points);
             let at = |a: usize, b: usize| grid[5 * (b + 1) + a];
             let normal = (at(2, 1) - at(1, 1)).cross(at(1, 2) - at(1, 1)).normalize();
-            let angle = normal.cross(tip).length().atan2(normal.dot(tip).abs()).to_degrees();
+            let angle = normal.cross(tip).length().atan2(normal.dot(tip)).to_degrees();
             assert!(angle < allowed, "{class:?}: {angle} degrees at level {level}");
         }
     }

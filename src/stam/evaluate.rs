@@ -81,8 +81,7 @@ impl Local {
         if self.at_vertex
             && let Some(tip) = self.tip
         {
-            // The tip's tangents are ordered to rounding of the sign: the innermost level knows which side is outside.
-            return if plain.dot(tip) < 0.0 { -tip } else { tip };
+            return tip;
         }
         let size = self.net.iter().fold(0.0f64, |size, p| size.max(p.distance(self.net[5])));
         let across = du.cross(dv).length() / du.length().max(dv.length()).max(f64::MIN_POSITIVE);
@@ -112,7 +111,7 @@ fn unit(du: DVec3, dv: DVec3) -> DVec3 {
     du.normalize_or_zero().cross(dv.normalize_or_zero()).normalize_or_zero()
 }
 
-/// Normal of the tangent plane at the extraordinary vertex, up to its sign; `None` without a plane.
+/// Normal of the tangent plane at the extraordinary vertex; `None` without a plane.
 fn tip_normal(table: &ClassTable, points: &[DVec3]) -> Option<DVec3> {
     let [first, second] = table.tangents.as_ref()?.each_ref().map(|weights| combine(weights, points));
     let size = points.iter().fold(0.0f64, |size, p| size.max(p.length()));

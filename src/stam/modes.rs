@@ -13,7 +13,7 @@ use std::f64::consts::{PI, TAU};
 pub(super) struct Modes {
     /// Largest eigenvalue below 1.
     pub lambda: f64,
-    /// Two left vectors whose values span the tangent plane.
+    /// Two left vectors whose values span the tangent plane; their cross product points along the normal.
     pub tangents: Option<[Vec<f64>; 2]>,
 }
 
@@ -123,10 +123,10 @@ impl Modes {
             }
             // The direction along the crease has the eigenvalue 1/2, and the second sine mode is not above it (at 4
             // faces both are equal, and a Jordan block lets the one along the crease win).
-            2..=4 => [sine(class, 1), along],
+            2..=4 => [along, sine(class, 1)],
             // Inside the sector the second sine mode wins. On the crease itself it vanishes, so the normals there have
             // another limit: such a sector has no tangent plane, and what is given is the limit inside.
-            _ => [sine(class, 1), sine(class, 2)],
+            _ => [sine(class, 2), sine(class, 1)],
         };
         Self { lambda: eigenvalue(angle).max(0.5), tangents: Some(tangents) }
     }
@@ -170,9 +170,14 @@ fn even_dart(class: RingClass, sharp: usize) -> (f64, Vec<f64>) {
         let before = sharp + n - 1;
         let sides = (spoke(before) + spoke(sharp + 1)) / 16.0 + (corner(before) + corner(sharp)) / 4.0;
         weights[1 + sharp] = (sides + 1.5 / (valence * valence)) / (lambda - 0.5);
-        (lambda, weights)
+        // Pointing along the sharp edge, so that the odd mode lies to its left.
+        let sign = weights[1 + sharp].signum();
+        (lambda, weights.into_iter().map(|w| sign * w).collect::<Vec<f64>>())
     };
-    let excess = |phi: f64| vector(phi).1.iter().sum::<f64>();
+    let excess = |phi: f64| {
+        let weights: Vec<f64> = vector(phi).1;
+        weights.iter().sum::<f64>() * weights[0].signum()
+    };
     // Between two poles of the sum (one where lambda is 1/2), so that its sign changes.
     let [mut low, mut high] =
         if n == 3 { [PI / 2.0, TAU / 3.0] } else { [TAU / valence, (1.5 * TAU / valence).min(PI / 2.0)] };
@@ -243,7 +248,7 @@ mod tests {
         }
         for k in 3..=20 {
             let crease = class(k, false, Tip::Crease, None);
-            let [first, second] = tangents(crease);
+            let [second, first] = tangents(crease);
             assert_left(crease, &first, eigenvalue(PI / f64::from(k)));
             assert_left(crease, &second, if k <= 4 { 0.5 } else { eigenvalue(2.0 * PI / f64::from(k)) });
         }
