@@ -157,7 +157,7 @@ impl PictureTargets {
 fn shader(device: &Device, module: &Module) -> wgpu::ShaderModule {
     device.device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some(module.name),
-        source: wgpu::ShaderSource::Wgsl(module.source().into()),
+        source: wgpu::ShaderSource::Wgsl(module.source_with(device.block_rows).into()),
     })
 }
 
