@@ -53,7 +53,7 @@ fn limit_point(record: vec4u, uv: vec2f) -> LimitPoint {
         let row = select(5u, window.y, window.x == 1u);
         let expanded = expanded_levels(record);
         let level = min(n, select(expanded, TABLE_LEVELS, groups_of(record) > 0u)) - 1u;
-        if level >= expanded {
+        if HAS_TAIL && level >= expanded {
             groups = groups_of(record);
             picked = record.x + expanded * LEVEL_TEXELS;
             weights = record.w + (level - expanded) * groups * 36u + row;
@@ -78,13 +78,14 @@ fn limit_point(record: vec4u, uv: vec2f) -> LimitPoint {
         du += vec3f(dot(x, cu), dot(y, cu), dot(z, cu)) * bv[j];
         dv += line * cv[j];
     }
-    // Not in a branch round the loop above: software adapters compute both sides, and this loop mostly ends at once.
-    if groups > 0u {
+    // Not in a branch round the loop above: software adapters compute both sides. This loop mostly ends at once, but on
+    // them it costs the pass a quarter even so (it spills registers); hence the constant.
+    if HAS_TAIL && groups > 0u {
         position = vec3f(0.0);
         du = vec3f(0.0);
         dv = vec3f(0.0);
     }
-    for (var g = 0u; g < groups; g++) {
+    for (var g = 0u; HAS_TAIL && g < groups; g++) {
         var a = vec4f(0.0);
         var b = vec4f(0.0);
         var c = vec4f(0.0);

@@ -93,7 +93,8 @@ pub struct Sample {
 #[derive(Debug)]
 pub struct Gpu {
     device: Device,
-    passes: Passes,
+    /// For tables in the expanded layout, and for the others.
+    passes: [Passes; 2],
     startup: Duration,
 }
 
@@ -118,7 +119,12 @@ impl Gpu {
     fn with_blocks(choice: &AdapterChoice, rows: u32) -> Result<Gpu, GpuError> {
         let start = Instant::now();
         let device = Device::open(choice, rows)?;
-        Ok(Gpu { device, passes: Passes::default(), startup: start.elapsed() })
+        Ok(Gpu { device, passes: [false, true].map(Passes::new), startup: start.elapsed() })
+    }
+
+    /// The passes that read these tables.
+    fn passes(&self, tables: &Tables) -> &Passes {
+        &self.passes[usize::from(tables.layout() != TableLayout::Expanded)]
     }
 
     /// Name of the adapter.
@@ -166,7 +172,7 @@ impl Gpu {
     /// # Errors
     /// [`GpuError::Patch`] for a patch that does not exist.
     pub fn evaluate(&self, tables: &Tables, samples: &[Sample]) -> Result<Vec<Jet>, GpuError> {
-        passes::evaluate::run(&self.device, &self.passes, tables, samples)
+        passes::evaluate::run(&self.device, self.passes(tables), tables, samples)
     }
 
     /// Draws a picture.
@@ -174,7 +180,7 @@ impl Gpu {
     /// # Errors
     /// [`GpuError::View`] for a view that cannot be drawn.
     pub fn render(&self, tables: &Tables, view: &View) -> Result<Frame, GpuError> {
-        frame::render(&self.device, &self.passes, tables, view)
+        frame::render(&self.device, self.passes(tables), tables, view)
     }
 
     /// What every pixel's centre sees: patch, (u,v), position, normal and field.
@@ -182,7 +188,7 @@ impl Gpu {
     /// # Errors
     /// As [`Gpu::render`].
     pub fn inspect(&self, tables: &Tables, view: &View) -> Result<SurfaceImage, GpuError> {
-        frame::inspect(&self.device, &self.passes, tables, view)
+        frame::inspect(&self.device, self.passes(tables), tables, view)
     }
 }
 

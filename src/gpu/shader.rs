@@ -32,6 +32,15 @@ pub const LEVEL_TEXELS: u32 = 27;
 /// pixels of a cube at level 7, 6 fall through without it, none with it.)
 pub const PUSH: f32 = 0.1;
 
+/// What is compiled into the shaders about the tables that they read.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Variant {
+    /// Rows of a block of a table.
+    pub block_rows: u32,
+    /// Some levels may be given by picked points.
+    pub has_tail: bool,
+}
+
 /// One shader module: its name, the files that it consists of, and its entry points.
 #[derive(Debug, Clone, Copy)]
 pub struct Module {
@@ -44,12 +53,12 @@ pub struct Module {
 impl Module {
     /// The whole source, constants first.
     pub fn source(&self) -> String {
-        self.source_with(BLOCK_ROWS)
+        self.source_for(&Variant { block_rows: BLOCK_ROWS, has_tail: true })
     }
 
-    /// The same for tables in blocks of so many rows.
-    pub(super) fn source_with(&self, block_rows: u32) -> String {
-        let mut source = constants(block_rows);
+    /// The same for other tables.
+    pub(super) fn source_for(&self, variant: &Variant) -> String {
+        let mut source = constants(variant);
         for file in self.files {
             source.push_str(file);
         }
@@ -106,7 +115,7 @@ pub const EVALUATE: Module =
 pub const MODULES: [Module; 6] = [VISIBILITY, LIMIT, POLYGON, SHADE, RESOLVE, EVALUATE];
 
 /// WGSL declarations of the constants above.
-fn constants(block_rows: u32) -> String {
+fn constants(variant: &Variant) -> String {
     let counts = [
         ("KIND_IRREGULAR", KIND_IRREGULAR),
         ("PATTERN_STRIPES", PATTERN_STRIPES),
@@ -115,13 +124,13 @@ fn constants(block_rows: u32) -> String {
         ("PATTERN_PICTURE", PATTERN_PICTURE),
         ("WORKGROUP", WORKGROUP),
         ("TABLE_WIDTH", TABLE_WIDTH),
-        ("BLOCK_ROWS", block_rows),
+        ("BLOCK_ROWS", variant.block_rows),
         ("TABLE_LEVELS", TABLE_LEVELS as u32),
         ("LEVEL_TEXELS", LEVEL_TEXELS),
         ("CENTRE_LEVEL", LEVELS as u32),
         ("NO_PATCH", NO_PATCH),
     ];
     let mut text: String = counts.iter().map(|(name, value)| format!("const {name} = {value}u;\n")).collect();
-    text.push_str(&format!("const PUSH = {PUSH:?};\n"));
+    text.push_str(&format!("const PUSH = {PUSH:?};\nconst HAS_TAIL = {};\n", variant.has_tail));
     text
 }

@@ -7,10 +7,11 @@
 //! of the table itself and a matrix that patches of the class share.
 //!
 //! # Changes
-//! design.md 3.2 stores the control points, Phat = M C. Their products cancel: M has entries of both signs that sum to
-//! zero, and C is of the size of the ring where Phat is of the size of its differences. The picked points are of the size
-//! of the result, U has small entries because rows are picked by pivoting, and r is below K: modes that have decayed below
-//! the rounding of f32 are not stored.
+//! design.md 3.2 stores the K control points, Phat = M C, whose products cancel: entries of M have both signs and sum to
+//! zero. Here the rows are picked by pivoting, so that U has small entries (absolute values that sum to 3 to 10 in a row up
+//! to valence 12, 18 at 64) and normals are as exact as those of the expanded table. And r is below K: 17 of 18 points for
+//! valence 5, 38 of 136 for valence 64, fewer without the first levels, for modes that have decayed below f32's rounding
+//! are not stored.
 //!
 //! # Practice
 //! [`Basis::new`] by Gram-Schmidt with row pivots, in f64, some 0.3 ms for a class of valence 5.
