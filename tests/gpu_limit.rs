@@ -2,15 +2,20 @@
 
 mod gpu_support;
 
-use catoptric::gpu::{AdapterChoice, Gpu, GpuError, PatchNet, Sample};
-use catoptric::mesh::SubdivMesh;
+use catoptric::gpu::tables::{BUDGET, bytes, tail_error};
+use catoptric::gpu::{AdapterChoice, Gpu, GpuError, PatchNet, Sample, TableLayout};
+use catoptric::mesh::{self, SubdivMesh};
 use catoptric::stam::{Jet, LimitSurface, Net, weights};
 use glam::{DVec3, dvec3};
-use gpu_support::{Random, gpu, mesh};
+use gpu_support::{Random, gpu, meshes};
 
 /// Positions are sums of 16 products in f32 of numbers of the size of the patch, which is at most the diagonal: 20
 /// roundings of 2^-24 (6e-8) each.
 const POSITION: f64 = 2e-6;
+/// Two layouts round differently. A compact one combines points with weights whose absolute values sum to 10 at most for
+/// these classes, each product rounded twice by 2^-24, of points at most half a diagonal away: 6e-7; and the sum of the 16
+/// adds what it adds in every layout.
+const BETWEEN_LAYOUTS: f64 = 1e-6;
 /// Normals in degrees at the 99.99th percentile (design.md 3.2): 1/100 pixel of reflection line is 1.4e-3. A derivative is
 /// off by 20 x 6e-8 of the patch's size, so the bound holds where that is less than some 15 times the derivative.
 const NORMAL_DEGREES: f64 = 1e-3;
@@ -66,26 +71,63 @@ fn parameters(seed: u64) -> Vec<[f32; 2]> {
     uv
 }
 
-/// Evaluates all patches of a mesh on both sides and compares.
+/// Evaluates all patches of a mesh on both sides, in every layout, and compares.
 fn compare(mesh: &SubdivMesh) {
+    // Isolated vertices alone, or nothing but holes: no layout has anything to say.
     let surface = LimitSurface::new(mesh).expect("it has a surface");
-    let tables = gpu().upload(&surface).expect("it fits");
+    if surface.patches().is_empty() {
+        return;
+    }
     let samples: Vec<Sample> = (0..surface.patches().len() as u32)
         .flat_map(|patch| parameters(u64::from(patch)).into_iter().map(move |uv| Sample { patch, uv }))
         .collect();
-    let jets = gpu().evaluate(&tables, &samples).expect("the adapter works");
+    let all = TableLayout::ALL.map(|layout| {
+        let tables = gpu().upload_as(&surface, layout).expect("it fits");
+        assert_eq!(tables.layout(), layout);
+        assert_eq!(tables.size(), bytes(&surface, layout), "{}: {layout}", mesh.name);
+        let jets = gpu().evaluate(&tables, &samples).expect("the adapter works");
+        compare_with_f64(mesh, &surface, layout, &samples, &jets);
+        jets
+    });
+    for jets in &all[1..] {
+        compare_layouts(mesh, &surface, &samples, [&all[0], jets]);
+    }
+}
+
+/// Positions within [`BETWEEN_LAYOUTS`]; regular patches the same to the last bit.
+fn compare_layouts(mesh: &SubdivMesh, surface: &LimitSurface, samples: &[Sample], [one, other]: [&[Jet]; 2]) {
+    let distance = |(a, b): (&Jet, &Jet)| a.position.distance(b.position);
+    let off = one.iter().zip(other).map(distance).fold(0.0, f64::max) / surface.diagonal();
+    println!("{:<28} layouts differ by {off:.1e}", mesh.name);
+    assert!(off <= BETWEEN_LAYOUTS, "{}: layouts differ by {off:e}", mesh.name);
+    for (sample, (a, b)) in samples.iter().zip(one.iter().zip(other)) {
+        if surface.class(sample.patch as usize).is_none() {
+            assert_eq!(a, b, "{}: {sample:?} of a regular patch", mesh.name);
+        }
+    }
+}
+
+fn compare_with_f64(mesh: &SubdivMesh, surface: &LimitSurface, layout: TableLayout, samples: &[Sample], jets: &[Jet]) {
     let diagonal = surface.diagonal();
-    let mut angles = Vec::new();
-    for (sample, jet) in samples.iter().zip(&jets) {
+    let (mut angles, mut farthest, mut steepest) = (Vec::new(), 0.0f64, 0.0f64);
+    for (sample, jet) in samples.iter().zip(jets) {
         let exact: Jet = surface.evaluate(sample.patch as usize, sample.uv.map(f64::from));
         let off = jet.position.distance(exact.position) / diagonal;
-        assert!(off <= POSITION, "{}: {sample:?} is off by {off:e}", mesh.name);
+        farthest = farthest.max(off);
+        assert!(off <= POSITION, "{} ({layout}): {sample:?} is off by {off:e}", mesh.name);
         // At the extraordinary vertex derivatives are zero or infinite; both sides give those of an innermost level.
         if sample.uv != [0.0, 0.0] {
             for (found, expected) in [(jet.du, exact.du), (jet.dv, exact.dv)] {
                 let size = exact.du.length().max(exact.dv.length());
                 let off = found.distance(expected) / size;
-                assert!(off <= DERIVATIVE, "{}: derivative at {sample:?} is off by {off:e}", mesh.name);
+                if size > 0.0 {
+                    steepest = steepest.max(off);
+                }
+                assert!(
+                    size == 0.0 || off <= DERIVATIVE,
+                    "{} ({layout}): derivative at {sample:?} is off by {off:e}",
+                    mesh.name
+                );
             }
         }
         // Derivatives are rounded like the larger of the two, which turns the normal by that over the height of the
@@ -98,27 +140,37 @@ fn compare(mesh: &SubdivMesh) {
     }
     angles.sort_by(f64::total_cmp);
     let percentile = angles[(angles.len() as f64 * 0.9999) as usize];
-    println!("{}: {} normals, 99.99%: {percentile:e}, max {:e}", mesh.name, angles.len(), angles[angles.len() - 1]);
-    assert!(percentile <= NORMAL_DEGREES, "{}: normals are off by {percentile:e} degrees", mesh.name);
+    println!(
+        "{:<28} {layout:<9} {:>7} samples: position {farthest:.1e}, derivative {steepest:.1e}, normal 99.99% \
+         {percentile:.1e}, max {:.1e}",
+        mesh.name,
+        angles.len(),
+        angles[angles.len() - 1]
+    );
+    assert!(percentile <= NORMAL_DEGREES, "{} ({layout}): normals are off by {percentile:e} degrees", mesh.name);
 }
 
 #[test]
-fn extraordinary_vertices_of_every_kind() {
-    for valence in [3, 4, 5, 6, 8, 12] {
+fn extraordinary_vertices_of_every_valence() {
+    for valence in 3..=12 {
         compare(&pole(valence, valence as u64));
     }
-    for name in ["pole_3.obj", "pole_5.obj", "pole_8.obj", "dart.obj", "corner.obj", "infinitely_sharp_crease.obj"] {
-        compare(&mesh(name));
-    }
-    for name in ["semi_sharp_crease.obj", "n_gons.obj", "boundary_edge_only.obj", "boundary_edge_and_corner.obj"] {
-        compare(&mesh(name));
+}
+
+#[test]
+fn every_test_mesh() {
+    for mesh in meshes() {
+        compare(&mesh);
     }
 }
 
 #[test]
 fn far_from_the_origin_nothing_changes() {
-    for valence in [3, 5, 8] {
+    for valence in [3, 5, 8, 12] {
         compare(&pole(valence, 7).translated(dvec3(1000.0, -500.0, 200.0)));
+    }
+    for mesh in meshes() {
+        compare(&mesh.translated(dvec3(1000.0, -500.0, 200.0)));
     }
 }
 
@@ -126,19 +178,37 @@ fn far_from_the_origin_nothing_changes() {
 /// mu the next eigenvalue: 5e-6 for N = 3, 1e-2 for N = 8; positions are scaled by lambda^24 or less on top.
 #[test]
 fn deeper_than_the_tables_nothing_breaks() {
-    for valence in [3, 5, 8] {
+    for valence in [3, 5, 8, 12] {
         let surface = LimitSurface::new(&pole(valence, 2)).expect("it has a surface");
-        let tables = gpu().upload(&surface).expect("it fits");
+        let left_out = surface.class(0).map_or(0.0, |class| tail_error(&surface.tables()[class]));
+        println!("valence {valence}: the last level is {left_out:.1e} of itself off the limit");
         let small = |n: i32| [[0.5f32.powi(n), 0.3 * 0.5f32.powi(n)], [0.0, 0.5f32.powi(n)]];
-        let tiny = (24..150).flat_map(small);
-        let samples: Vec<Sample> = tiny.map(|uv| Sample { patch: 0, uv }).collect();
-        for (sample, jet) in samples.iter().zip(gpu().evaluate(&tables, &samples).expect("the adapter works")) {
-            let exact = surface.evaluate(0, sample.uv.map(f64::from));
-            assert!(jet.position.distance(exact.position) <= POSITION * surface.diagonal(), "{sample:?} {jet:?}");
-            assert!(angle_degrees(jet.normal, exact.normal) < 0.5, "{sample:?} {jet:?} {exact:?}");
-            assert!(jet.du.is_finite() && jet.dv.is_finite(), "{sample:?} {jet:?}");
+        let samples: Vec<Sample> = (24..150).flat_map(small).map(|uv| Sample { patch: 0, uv }).collect();
+        for layout in TableLayout::ALL {
+            let tables = gpu().upload_as(&surface, layout).expect("it fits");
+            for (sample, jet) in samples.iter().zip(gpu().evaluate(&tables, &samples).expect("the adapter works")) {
+                let exact = surface.evaluate(0, sample.uv.map(f64::from));
+                let turned = angle_degrees(jet.normal, exact.normal);
+                assert!(jet.position.distance(exact.position) <= POSITION * surface.diagonal(), "{sample:?} {jet:?}");
+                // The weights of a row times a ring a few times larger than the tangents.
+                assert!(turned < 1e-3 + 4.0 * left_out.to_degrees(), "{layout}: {sample:?} {turned} {jet:?} {exact:?}");
+                assert!(jet.du.is_finite() && jet.dv.is_finite(), "{sample:?} {jet:?}");
+            }
         }
     }
+}
+
+/// What `Auto` chooses: the fastest that saves memory, within the budget.
+#[test]
+fn layouts_take_what_they_say() {
+    let surface = LimitSurface::new(&mesh::sample()).expect("it has a surface");
+    let [expanded, compact, hybrid] = TableLayout::ALL.map(|layout| bytes(&surface, layout));
+    let auto = gpu().upload(&surface).expect("it fits");
+    assert!(compact < hybrid && hybrid < expanded && expanded < BUDGET, "{compact} {hybrid} {expanded}");
+    assert_eq!(auto.layout(), TableLayout::Expanded, "a megabyte is not worth saving");
+    assert_eq!(auto.size(), bytes(&surface, TableLayout::Auto));
+    assert_eq!("hybrid".parse(), Ok(TableLayout::Hybrid));
+    assert!("dense".parse::<TableLayout>().is_err());
 }
 
 #[test]

@@ -3,11 +3,11 @@
 mod gpu_support;
 
 use catoptric::field::{Camera, Field, Light, Pattern, reflection_direction};
-use catoptric::gpu::{Frame, Gpu, GpuError, NO_PATCH, Palette, Pipeline, SurfaceImage, Tables, View};
+use catoptric::gpu::{Frame, Gpu, GpuError, NO_PATCH, Palette, Pipeline, SurfaceImage, TableLayout, Tables, View};
 use catoptric::mesh::{Crease, SubdivMesh};
 use catoptric::stam::LimitSurface;
 use glam::{DVec2, DVec3, dvec3};
-use gpu_support::{Random, gpu, mesh};
+use gpu_support::{Random, gpu, mesh, meshes};
 
 const SIZE: [u32; 2] = [220, 200];
 
@@ -128,6 +128,27 @@ fn pictures_are_the_same_every_time() {
     let other = Gpu::new().expect("an adapter");
     let again = other.render(&other.upload(&surface).expect("it fits"), &view).expect("the adapter works");
     assert!(first == again.rgba8, "a new device draws another picture");
+}
+
+/// The layouts agree to f32 rounding, so pictures differ where a pixel lies on the edge of a patch, and by single steps
+/// of 8-bit colour elsewhere.
+#[test]
+fn layouts_draw_the_same_picture() {
+    for mesh in meshes() {
+        let surface = LimitSurface::new(&mesh).expect("it has a surface");
+        if surface.patches().is_empty() {
+            continue;
+        }
+        let view = view(&surface, dvec3(1.0, 2.0, 1.5));
+        let [first, others @ ..] =
+            TableLayout::ALL.map(|layout| render(&gpu().upload_as(&surface, layout).expect("it fits"), &view).rgba8);
+        for other in others {
+            let steps = first.iter().zip(&other).map(|(&a, &b)| a.abs_diff(b));
+            let [some, many] = [1, 8].map(|least| steps.clone().filter(|&step| step >= least).count());
+            println!("{}: {some} bytes differ, {many} by 8 or more, of {}", mesh.name, first.len());
+            assert!(some <= first.len() / 1000 && many <= first.len() / 10_000, "{}: {some} {many}", mesh.name);
+        }
+    }
 }
 
 /// A picture in several tiles is the same as each of its parts: tiles of 2048 samples, so 1100 pixels at 4 samples are 3.

@@ -9,16 +9,6 @@ struct LimitPoint {
     normal: vec3f,
 }
 
-// A texel a patch: first texel in `points`; kind (bits 0 to 7), refinement levels along u and v (4 bits each),
-// levels of its table (from bit 16); first texel in `scales`; 0.
-@group(0) @binding(0) var patches: texture_2d<u32>;
-// Rows of 4 points, 3 texels each: the four x, the four y, the four z. A regular patch has 4 rows. A level of an irregular
-// patch has 9: those of the windows at u >= 1 (5), then those of the window at u < 1 (4); after the last level comes
-// one texel with the limit normal at (0,0).
-@group(0) @binding(1) var points: texture_2d<f32>;
-// lambda^(n-1) and 2^n lambda^(n-1), a texel a level n, of each class.
-@group(0) @binding(2) var scales: texture_2d<f32>;
-
 // Values of the four uniform cubic B-splines at t in [0,1].
 fn basis(t: f32) -> vec4f {
     let s = 1.0 - t;
@@ -36,19 +26,15 @@ fn unit_or_zero(v: vec3f) -> vec3f {
     return select(vec3f(0.0), v / size, size > 0.0);
 }
 
-fn refinement_of(record: vec4u) -> vec2u {
-    return vec2u(record.y >> 8u, record.y >> 12u) & vec2u(15u);
-}
-
-fn is_irregular(record: vec4u) -> bool {
-    return (record.y & 255u) == KIND_IRREGULAR;
-}
-
 fn limit_point(record: vec4u, uv: vec2f) -> LimitPoint {
     var t = uv;
     var first = record.x;
     var scale = vec2f(1.0);
     var centre = false;
+    // Groups of picked points to combine; where they are, and their weights.
+    var groups = 0u;
+    var picked = 0u;
+    var weights = 0u;
     if is_irregular(record) {
         // n from the exponent of the larger parameter: exact, where log2 would be off by one ulp. Zeros and denormals
         // (which the adapter may flush) are the extraordinary vertex.
@@ -63,9 +49,17 @@ fn limit_point(record: vec4u, uv: vec2f) -> LimitPoint {
         }
         let window = select(vec2u(0u), vec2u(1u), ab >= vec2f(1.0));
         t = ab - vec2f(window);
-        let level = min(n, record.y >> 16u) - 1u;
         // At u < 1 there is only the window with v >= 1.
-        first += level * LEVEL_TEXELS + select(15u, window.y * 3u, window.x == 1u);
+        let row = select(5u, window.y, window.x == 1u);
+        let expanded = expanded_levels(record);
+        let level = min(n, select(expanded, TABLE_LEVELS, groups_of(record) > 0u)) - 1u;
+        if HAS_TAIL && level >= expanded {
+            groups = groups_of(record);
+            picked = record.x + expanded * LEVEL_TEXELS;
+            weights = record.w + (level - expanded) * groups * 36u + row;
+        } else {
+            first += level * LEVEL_TEXELS + 3u * row;
+        }
         scale = textureLoad(scales, at(record.z + n - 1u), 0).xy;
     }
     let bu = basis(t.x);
@@ -76,19 +70,46 @@ fn limit_point(record: vec4u, uv: vec2f) -> LimitPoint {
     var du = vec3f(0.0);
     var dv = vec3f(0.0);
     for (var j = 0u; j < 4u; j++) {
-        let x = textureLoad(points, at(first + 3u * j), 0);
-        let y = textureLoad(points, at(first + 3u * j + 1u), 0);
-        let z = textureLoad(points, at(first + 3u * j + 2u), 0);
+        let x = point_texel(first + 3u * j);
+        let y = point_texel(first + 3u * j + 1u);
+        let z = point_texel(first + 3u * j + 2u);
         let line = vec3f(dot(x, bu), dot(y, bu), dot(z, bu));
         position += line * bv[j];
         du += vec3f(dot(x, cu), dot(y, cu), dot(z, cu)) * bv[j];
         dv += line * cv[j];
     }
+    // Not in a branch round the loop above: software adapters compute both sides. This loop mostly ends at once, but on
+    // them it costs the pass a quarter even so (it spills registers); hence the constant.
+    if HAS_TAIL && groups > 0u {
+        position = vec3f(0.0);
+        du = vec3f(0.0);
+        dv = vec3f(0.0);
+    }
+    for (var g = 0u; HAS_TAIL && g < groups; g++) {
+        var a = vec4f(0.0);
+        var b = vec4f(0.0);
+        var c = vec4f(0.0);
+        for (var k = 0u; k < 4u; k++) {
+            for (var j = 0u; j < 4u; j++) {
+                let w = point_texel(weights + g * 36u + k * 9u + j);
+                let line = dot(w, bu);
+                a[k] += line * bv[j];
+                b[k] += dot(w, cu) * bv[j];
+                c[k] += line * cv[j];
+            }
+        }
+        let x = point_texel(picked + 3u * g);
+        let y = point_texel(picked + 3u * g + 1u);
+        let z = point_texel(picked + 3u * g + 2u);
+        position += vec3f(dot(x, a), dot(y, a), dot(z, a));
+        du += vec3f(dot(x, b), dot(y, b), dot(z, b));
+        dv += vec3f(dot(x, c), dot(y, c), dot(z, c));
+    }
     // The normal comes from the normalised derivatives, without any power of two (design.md 3.2).
     var normal = unit_or_zero(cross(unit_or_zero(du), unit_or_zero(dv)));
     if centre {
         position = vec3f(0.0);
-        normal = textureLoad(points, at(record.x + (record.y >> 16u) * LEVEL_TEXELS), 0).xyz;
+        normal = point_texel(normal_texel(record)).xyz;
     }
     return LimitPoint(position * scale.x, du * scale.y, dv * scale.y, normal);
 }

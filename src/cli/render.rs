@@ -3,7 +3,7 @@
 use super::args::{size, vector};
 use super::{Failure, load, progress};
 use crate::field::{DEFAULT_FOV, Light, Pattern, Picture, Scout};
-use crate::gpu::{Gpu, MAX_PROXY_LEVEL, MAX_SAMPLES, Pipeline, View};
+use crate::gpu::{Gpu, MAX_PROXY_LEVEL, MAX_SAMPLES, Pipeline, TableLayout, View, tables};
 use crate::output::{check_writable, write_png};
 use crate::stam::LimitSurface;
 use clap::{Args, ValueEnum};
@@ -30,6 +30,9 @@ pub(super) struct RenderArgs {
     /// Exact limit at every pixel, or interpolated from the proxy's vertices
     #[arg(long, value_enum, default_value = "limit")]
     pipeline: PipelineName,
+    /// How the tables of irregular patches are stored: auto, expanded, compact or hybrid
+    #[arg(long = "tables", value_name = "LAYOUT", default_value_t)]
+    layout: TableLayout,
     /// Level of the proxy tessellation: 2^LEVEL parts a face each way [default: as fine as the picture asks for]
     #[arg(long, value_name = "LEVEL", value_parser = clap::value_parser!(u32).range(0..=i64::from(MAX_PROXY_LEVEL)))]
     proxy_level: Option<u32>,
@@ -135,8 +138,8 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     })?;
     let view = view(args, &scout, pattern)?;
     let gpu = clock.time("adapter", Gpu::new)?;
-    let tables = clock.time("tables", || gpu.upload(&surface))?;
-    let frame = gpu.render(&tables, &view)?;
+    let uploaded = clock.time("tables", || gpu.upload_as(&surface, args.layout))?;
+    let frame = gpu.render(&uploaded, &view)?;
     clock.0.extend(&frame.timings.steps);
     clock.time("write", || write_png(&args.output, frame.size, &frame.rgba8))?;
     bar.finish_and_clear();
@@ -144,6 +147,10 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
         eprintln!("{:<20} {}", "adapter", gpu.adapter());
         for (name, time) in &clock.0 {
             eprintln!("{name:<20} {:>8.1} ms", time.as_secs_f64() * 1e3);
+        }
+        for layout in TableLayout::ALL {
+            let chosen = if layout == uploaded.layout() { ", chosen" } else { "" };
+            eprintln!("{:<20} {:>12} bytes{chosen}", format!("tables {layout}"), tables::bytes(&surface, layout));
         }
     }
     Ok(())

@@ -1,7 +1,6 @@
 //! A headless Vulkan device.
 
 use super::GpuError;
-use super::shader::TABLE_WIDTH;
 use std::sync::{Arc, Mutex};
 
 /// Which adapter to use.
@@ -51,12 +50,14 @@ pub(super) struct Device {
     pub queue: wgpu::Queue,
     pub info: wgpu::AdapterInfo,
     pub limits: wgpu::Limits,
+    /// Rows of a block of a table, a power of two.
+    pub block_rows: u32,
     /// First error that wgpu reported outside a call that returns one.
     error: Arc<Mutex<Option<String>>>,
 }
 
 impl Device {
-    pub fn open(choice: &AdapterChoice) -> Result<Device, GpuError> {
+    pub fn open(choice: &AdapterChoice, block_rows: u32) -> Result<Device, GpuError> {
         let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
         descriptor.backends = wgpu::Backends::VULKAN;
         // Validation layers are the business of tests that install them; their absence must not print warnings.
@@ -83,7 +84,7 @@ impl Device {
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
             slot.lock().unwrap_or_else(|e| e.into_inner()).get_or_insert(error.to_string());
         }));
-        Ok(Device { device, queue, info: adapter.get_info(), limits, error })
+        Ok(Device { device, queue, info: adapter.get_info(), limits, block_rows, error })
     }
 
     /// Submits and waits; reports what wgpu reported meanwhile.
@@ -123,63 +124,6 @@ impl Device {
         let contents: &[u8] = bytemuck::cast_slice(if data.is_empty() { &one } else { data });
         self.fits(what, contents.len() as u64)?;
         Ok(self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(what), contents, usage }))
-    }
-
-    /// A table as a texture [`TABLE_WIDTH`](super::shader::TABLE_WIDTH) texels wide; `T` is one texel.
-    pub fn table<T: bytemuck::Pod>(
-        &self,
-        what: &'static str,
-        texels: &[T],
-        format: wgpu::TextureFormat,
-    ) -> Result<wgpu::Texture, GpuError> {
-        let width = TABLE_WIDTH as usize;
-        self.table_fits(what, texels.len() as u64, size_of::<T>() as u64)?;
-        let extent = |width: usize, height: usize| wgpu::Extent3d {
-            width: width as u32,
-            height: height as u32,
-            depth_or_array_layers: 1,
-        };
-        let texture = self.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some(what),
-            size: extent(width, texels.len().div_ceil(width).max(1)),
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format,
-            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-            view_formats: &[],
-        });
-        // Whole rows in pieces of 16 MiB, each flushed, so that staging copies do not pile up; then the rest of a row.
-        let rows_at_once = ((16 << 20) / (width * size_of::<T>())).max(1);
-        let write = |first_row: usize, part: &[T], row: usize| {
-            let mut target = texture.as_image_copy();
-            target.origin.y = first_row as u32;
-            let layout = wgpu::TexelCopyBufferLayout {
-                offset: 0,
-                bytes_per_row: Some((row * size_of::<T>()) as u32),
-                rows_per_image: None,
-            };
-            self.queue.write_texture(target, bytemuck::cast_slice(part), layout, extent(row, part.len() / row));
-            self.queue.submit([]);
-        };
-        let whole = texels.len() / width * width;
-        for (piece, part) in texels[..whole].chunks(rows_at_once * width).enumerate() {
-            write(piece * rows_at_once, part, width);
-        }
-        if whole < texels.len() {
-            write(whole / width, &texels[whole..], texels.len() - whole);
-        }
-        self.check()?;
-        Ok(texture)
-    }
-
-    /// An error if a table of this many texels exceeds a texture.
-    pub fn table_fits(&self, what: &'static str, texels: u64, texel_size: u64) -> Result<(), GpuError> {
-        let limit = u64::from(TABLE_WIDTH) * u64::from(self.limits.max_texture_dimension_2d);
-        if texels > limit {
-            return Err(GpuError::TooLarge { what, size: texels * texel_size, limit: limit * texel_size });
-        }
-        Ok(())
     }
 
     /// An error if a storage buffer of this size cannot be bound.

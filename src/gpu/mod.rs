@@ -13,6 +13,7 @@
 //! [`Gpu::inspect`] reads back what every pixel saw, [`Gpu::evaluate`] evaluates samples. All three run the same
 //! `limit_point` in WGSL.
 
+mod blocks;
 mod device;
 mod frame;
 mod passes;
@@ -24,12 +25,13 @@ mod view;
 
 pub use device::AdapterChoice;
 pub use frame::{Frame, NO_PATCH, SurfaceImage, Timings};
-pub use tables::{PatchNet, PatchSource, Tables};
+pub use tables::{PatchNet, PatchSource, TableLayout, Tables};
 pub use view::{MAX_PROXY_LEVEL, MAX_SAMPLES, Palette, Pipeline, View};
 
 use crate::stam::{Jet, LimitSurface};
 use device::Device;
 use passes::Passes;
+use shader::BLOCK_ROWS;
 use std::time::{Duration, Instant};
 
 /// Why the GPU could not do its work.
@@ -46,8 +48,8 @@ pub enum GpuError {
         /// What wgpu said.
         message: String,
     },
-    /// A table exceeds what the adapter can bind.
-    #[error("{what} take {size} bytes, but this adapter binds at most {limit} bytes at once: use a smaller mesh")]
+    /// A table exceeds what the adapter can hold or bind.
+    #[error("{what} take {size} bytes, but this adapter takes at most {limit} bytes: use a smaller mesh")]
     TooLarge {
         /// Which buffer.
         what: &'static str,
@@ -91,7 +93,8 @@ pub struct Sample {
 #[derive(Debug)]
 pub struct Gpu {
     device: Device,
-    passes: Passes,
+    /// For tables in the expanded layout, and for the others.
+    passes: [Passes; 2],
     startup: Duration,
 }
 
@@ -109,9 +112,19 @@ impl Gpu {
     /// # Errors
     /// As [`Gpu::new`].
     pub fn with(choice: &AdapterChoice) -> Result<Gpu, GpuError> {
+        Gpu::with_blocks(choice, BLOCK_ROWS)
+    }
+
+    /// Opens an adapter with tables in blocks of so many rows, a power of two.
+    fn with_blocks(choice: &AdapterChoice, rows: u32) -> Result<Gpu, GpuError> {
         let start = Instant::now();
-        let device = Device::open(choice)?;
-        Ok(Gpu { device, passes: Passes::default(), startup: start.elapsed() })
+        let device = Device::open(choice, rows)?;
+        Ok(Gpu { device, passes: [false, true].map(Passes::new), startup: start.elapsed() })
+    }
+
+    /// The passes that read these tables.
+    fn passes(&self, tables: &Tables) -> &Passes {
+        &self.passes[usize::from(tables.layout() != TableLayout::Expanded)]
     }
 
     /// Name of the adapter.
@@ -129,20 +142,28 @@ impl Gpu {
         self.startup
     }
 
-    /// Builds the tables of a surface and puts them on the adapter.
+    /// Builds the tables of a surface, in the layout that suits it, and puts them on the adapter.
     ///
     /// # Errors
-    /// [`GpuError::TooLarge`] where a table exceeds the adapter's binding limit.
+    /// [`GpuError::TooLarge`] where a table exceeds the adapter, [`GpuError::Device`] where its memory does not suffice.
     pub fn upload(&self, surface: &LimitSurface) -> Result<Tables, GpuError> {
-        self.upload_patches(surface)
+        self.upload_as(surface, TableLayout::Auto)
     }
 
-    /// The same for patches from any source.
+    /// The same in a layout of choice.
+    ///
+    /// # Errors
+    /// As [`Gpu::upload`].
+    pub fn upload_as(&self, surface: &LimitSurface, layout: TableLayout) -> Result<Tables, GpuError> {
+        tables::upload(&self.device, surface, layout)
+    }
+
+    /// Tables of patches from any source, in the layout that suits them.
     ///
     /// # Errors
     /// As [`Gpu::upload`].
     pub fn upload_patches(&self, source: &(impl PatchSource + ?Sized)) -> Result<Tables, GpuError> {
-        tables::upload(&self.device, source)
+        tables::upload(&self.device, source, TableLayout::Auto)
     }
 
     /// Evaluates the limit at samples, in f32 relative to each patch's origin. Positions come back in world space,
@@ -151,7 +172,7 @@ impl Gpu {
     /// # Errors
     /// [`GpuError::Patch`] for a patch that does not exist.
     pub fn evaluate(&self, tables: &Tables, samples: &[Sample]) -> Result<Vec<Jet>, GpuError> {
-        passes::evaluate::run(&self.device, &self.passes, tables, samples)
+        passes::evaluate::run(&self.device, self.passes(tables), tables, samples)
     }
 
     /// Draws a picture.
@@ -159,7 +180,7 @@ impl Gpu {
     /// # Errors
     /// [`GpuError::View`] for a view that cannot be drawn.
     pub fn render(&self, tables: &Tables, view: &View) -> Result<Frame, GpuError> {
-        frame::render(&self.device, &self.passes, tables, view)
+        frame::render(&self.device, self.passes(tables), tables, view)
     }
 
     /// What every pixel's centre sees: patch, (u,v), position, normal and field.
@@ -167,6 +188,47 @@ impl Gpu {
     /// # Errors
     /// As [`Gpu::render`].
     pub fn inspect(&self, tables: &Tables, view: &View) -> Result<SurfaceImage, GpuError> {
-        frame::inspect(&self.device, &self.passes, tables, view)
+        frame::inspect(&self.device, self.passes(tables), tables, view)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::field::Scout;
+    use crate::mesh;
+
+    /// The same tables in many blocks: the same bits in every sample and every pixel.
+    #[test]
+    fn blocks_change_nothing() {
+        let surface = LimitSurface::new(&mesh::sample()).expect("the sample has a surface");
+        let scout = Scout::new(&surface).expect("it has faces");
+        let camera = scout.camera([200, 150], glam::DVec3::Z);
+        let view = View::new(camera, scout.light(camera.eye, glam::DVec3::Z));
+        let samples: Vec<Sample> = (0..surface.patches().len() as u32)
+            .flat_map(|patch| [0.0, 0.001, 0.03, 0.7].map(|x| Sample { patch, uv: [x, 0.6 * x] }))
+            .collect();
+        let choice = AdapterChoice::from_env();
+        let [whole, parts] = [BLOCK_ROWS, 2].map(|rows| Gpu::with_blocks(&choice, rows).expect("an adapter"));
+        for layout in TableLayout::ALL {
+            let results = [&whole, &parts].map(|gpu| {
+                let tables = gpu.upload_as(&surface, layout).expect("it fits");
+                let jets = gpu.evaluate(&tables, &samples).expect("the adapter works");
+                (tables.blocks(), jets, gpu.render(&tables, &view).expect("the adapter works").rgba8)
+            });
+            let [(one, jets, picture), (several, block_jets, block_picture)] = results;
+            assert_eq!(one, 1);
+            assert!(several > 2, "{layout}: {several} blocks");
+            assert!(jets == block_jets && picture == block_picture, "{layout}: {several} blocks differ from one");
+        }
+    }
+
+    #[test]
+    fn tables_beyond_the_adapter_are_refused() {
+        let surface = LimitSurface::new(&mesh::sample()).expect("the sample has a surface");
+        let mut gpu = Gpu::with_blocks(&AdapterChoice::from_env(), 1).expect("an adapter");
+        gpu.device.limits.max_texture_array_layers = 2;
+        let error = gpu.upload_as(&surface, TableLayout::Expanded).map(drop);
+        assert!(matches!(error, Err(GpuError::TooLarge { limit: 131_072, .. })), "{error:?}");
     }
 }

@@ -1,6 +1,7 @@
 //! WGSL sources: which files make up a pass, and the constants that Rust shares with them.
 
 use super::NO_PATCH;
+use super::tables::TABLE_LEVELS;
 use crate::stam::LEVELS;
 
 /// Kind of a patch of 16 points.
@@ -21,12 +22,24 @@ pub const WORKGROUP: u32 = 64;
 pub const SCALE_LEVELS: u32 = 126;
 /// Texels in a row of a table texture; the tables of the largest meshes then have some 10,000 rows.
 pub const TABLE_WIDTH: u32 = 4096;
+/// Rows of a block of a table: what every adapter takes (WebGPU's default limit), a power of two so that shaders find a
+/// texel with shifts.
+pub const BLOCK_ROWS: u32 = 8192;
 /// Texels of one level of an irregular patch: 9 rows of 4 points, x, y and z each.
 pub const LEVEL_TEXELS: u32 = 27;
 /// Distance in pixels by which the borders of proxy patches overlap: large against the rasteriser's grid of 1/256 pixel
 /// on which vertices that differ by rounding may land one step apart, small against a pixel. (Measured: in 36 million
 /// pixels of a cube at level 7, 6 fall through without it, none with it.)
 pub const PUSH: f32 = 0.1;
+
+/// What is compiled into the shaders about the tables that they read.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Variant {
+    /// Rows of a block of a table.
+    pub block_rows: u32,
+    /// Some levels may be given by picked points.
+    pub has_tail: bool,
+}
 
 /// One shader module: its name, the files that it consists of, and its entry points.
 #[derive(Debug, Clone, Copy)]
@@ -40,7 +53,12 @@ pub struct Module {
 impl Module {
     /// The whole source, constants first.
     pub fn source(&self) -> String {
-        let mut source = constants();
+        self.source_for(&Variant { block_rows: BLOCK_ROWS, has_tail: true })
+    }
+
+    /// The same for other tables.
+    pub(super) fn source_for(&self, variant: &Variant) -> String {
+        let mut source = constants(variant);
         for file in self.files {
             source.push_str(file);
         }
@@ -49,6 +67,7 @@ impl Module {
 }
 
 const RECORDS: &str = include_str!("../../shaders/shared/records.wgsl");
+const TABLES: &str = include_str!("../../shaders/shared/tables.wgsl");
 const LIMIT_POINT: &str = include_str!("../../shaders/shared/limit_point.wgsl");
 const FULLSCREEN: &str = include_str!("../../shaders/shared/fullscreen.wgsl");
 const SURFACE: &str = include_str!("../../shaders/shared/surface.wgsl");
@@ -57,13 +76,16 @@ const PATTERN: &str = include_str!("../../shaders/shared/pattern.wgsl");
 const REFLECTION: &str = include_str!("../../shaders/field/reflection.wgsl");
 
 /// Rasterises the proxy.
-pub const VISIBILITY: Module =
-    Module { name: "visibility", files: &[RECORDS, LIMIT_POINT, include_str!("../../shaders/visibility.wgsl")] };
+pub const VISIBILITY: Module = Module {
+    name: "visibility",
+    files: &[RECORDS, TABLES, LIMIT_POINT, include_str!("../../shaders/visibility.wgsl")],
+};
 /// Exact surface per pixel.
 pub const LIMIT: Module = Module {
     name: "limit",
     files: &[
         RECORDS,
+        TABLES,
         LIMIT_POINT,
         REFLECTION,
         OCTAHEDRAL,
@@ -87,13 +109,13 @@ pub const RESOLVE: Module =
     Module { name: "resolve", files: &[FULLSCREEN, include_str!("../../shaders/resolve.wgsl")] };
 /// Limit at samples.
 pub const EVALUATE: Module =
-    Module { name: "evaluate", files: &[RECORDS, LIMIT_POINT, include_str!("../../shaders/evaluate.wgsl")] };
+    Module { name: "evaluate", files: &[RECORDS, TABLES, LIMIT_POINT, include_str!("../../shaders/evaluate.wgsl")] };
 
 /// All modules.
 pub const MODULES: [Module; 6] = [VISIBILITY, LIMIT, POLYGON, SHADE, RESOLVE, EVALUATE];
 
 /// WGSL declarations of the constants above.
-fn constants() -> String {
+fn constants(variant: &Variant) -> String {
     let counts = [
         ("KIND_IRREGULAR", KIND_IRREGULAR),
         ("PATTERN_STRIPES", PATTERN_STRIPES),
@@ -102,11 +124,13 @@ fn constants() -> String {
         ("PATTERN_PICTURE", PATTERN_PICTURE),
         ("WORKGROUP", WORKGROUP),
         ("TABLE_WIDTH", TABLE_WIDTH),
+        ("BLOCK_ROWS", variant.block_rows),
+        ("TABLE_LEVELS", TABLE_LEVELS as u32),
         ("LEVEL_TEXELS", LEVEL_TEXELS),
         ("CENTRE_LEVEL", LEVELS as u32),
         ("NO_PATCH", NO_PATCH),
     ];
     let mut text: String = counts.iter().map(|(name, value)| format!("const {name} = {value}u;\n")).collect();
-    text.push_str(&format!("const PUSH = {PUSH:?};\n"));
+    text.push_str(&format!("const PUSH = {PUSH:?};\nconst HAS_TAIL = {};\n", variant.has_tail));
     text
 }

@@ -17,6 +17,18 @@ pub fn mesh(name: &str) -> SubdivMesh {
     mesh::read(&path).expect("a test mesh is valid")
 }
 
+/// All meshes of tests/meshes that have a surface, by name.
+pub fn meshes() -> Vec<SubdivMesh> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes");
+    let entries = std::fs::read_dir(folder).expect("tests/meshes is there");
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.expect("it is readable").file_name().to_string_lossy().into_owned()).collect();
+    names.retain(|name| name.ends_with(".obj"));
+    names.sort();
+    assert!(names.len() >= 20, "only {} test meshes", names.len());
+    names.iter().map(|name| mesh(name)).collect()
+}
+
 /// Numbers in [0,1) from a multiplicative congruential generator: the same in every run.
 #[derive(Debug)]
 pub struct Random(u64);

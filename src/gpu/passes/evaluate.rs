@@ -1,6 +1,6 @@
 //! `shaders/evaluate.wgsl`: the limit at samples.
 
-use super::{Passes, bind, shader};
+use super::{Passes, bind};
 use crate::gpu::device::Device;
 use crate::gpu::records::{JetRecord, SampleRecord};
 use crate::gpu::shader::{EVALUATE, WORKGROUP};
@@ -18,7 +18,7 @@ fn pipeline<'a>(passes: &'a Passes, device: &Device) -> &'a wgpu::ComputePipelin
         device.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some("evaluate"),
             layout: None,
-            module: &shader(device, &EVALUATE),
+            module: &passes.shader(device, &EVALUATE),
             entry_point: Some("evaluate"),
             compilation_options: Default::default(),
             cache: None,

@@ -8,7 +8,7 @@ pub mod visibility;
 
 use super::device::Device;
 use super::proxy::Proxy;
-use super::shader::Module;
+use super::shader::{Module, Variant};
 use super::view::Tile;
 use super::{GpuError, Pipeline, Tables, View};
 use std::sync::OnceLock;
@@ -17,6 +17,8 @@ use wgpu::{BufferUsages, TextureFormat, TextureUsages};
 /// The compiled pipelines, each made when it is first needed: on a software adapter compiling takes longer than drawing.
 #[derive(Debug, Default)]
 pub struct Passes {
+    /// Whether they read tables with levels given by picked points.
+    has_tail: bool,
     visibility: OnceLock<wgpu::RenderPipeline>,
     visibility_polygon: OnceLock<wgpu::RenderPipeline>,
     limit: OnceLock<wgpu::RenderPipeline>,
@@ -29,6 +31,18 @@ pub struct Passes {
 }
 
 impl Passes {
+    pub(super) fn new(has_tail: bool) -> Passes {
+        Passes { has_tail, ..Passes::default() }
+    }
+
+    fn shader(&self, device: &Device, module: &Module) -> wgpu::ShaderModule {
+        let variant = Variant { block_rows: device.block_rows, has_tail: self.has_tail };
+        device.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(module.name),
+            source: wgpu::ShaderSource::Wgsl(module.source_for(&variant).into()),
+        })
+    }
+
     /// Compiles what a picture needs, in parallel.
     pub(super) fn prepare(&self, device: &Device, pipeline: Pipeline) {
         rayon::join(
@@ -154,16 +168,10 @@ impl PictureTargets {
     }
 }
 
-fn shader(device: &Device, module: &Module) -> wgpu::ShaderModule {
-    device.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some(module.name),
-        source: wgpu::ShaderSource::Wgsl(module.source().into()),
-    })
-}
-
 /// A pipeline that draws one triangle over the targets; `masked`: where the depth buffer of [`Visible`] has surface. (A
 /// branch on coverage in the shader would save nothing on software adapters: they compute both sides.)
 fn fullscreen(
+    passes: &Passes,
     device: &Device,
     module: &Module,
     entry: &str,
@@ -179,7 +187,7 @@ fn fullscreen(
         stencil: Default::default(),
         bias: Default::default(),
     };
-    let shader = shader(device, module);
+    let shader = passes.shader(device, module);
     device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(module.name),
         layout: None,

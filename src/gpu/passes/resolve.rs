@@ -6,7 +6,7 @@ use crate::gpu::view::Tile;
 use crate::gpu::{GpuError, shader::RESOLVE};
 
 pub fn pipeline<'a>(passes: &'a Passes, device: &Device) -> &'a wgpu::RenderPipeline {
-    passes.resolve.get_or_init(|| fullscreen(device, &RESOLVE, "resolve", &[COLOUR_FORMAT], false))
+    passes.resolve.get_or_init(|| fullscreen(passes, device, &RESOLVE, "resolve", &[COLOUR_FORMAT], false))
 }
 
 pub fn run(

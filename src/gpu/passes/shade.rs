@@ -77,7 +77,7 @@ fn mip_levels(picture: &Picture) -> Vec<Picture> {
 }
 
 pub fn pipeline<'a>(passes: &'a Passes, device: &Device) -> &'a wgpu::RenderPipeline {
-    passes.shade.get_or_init(|| fullscreen(device, &SHADE, "shade", &[SAMPLE_FORMAT], true))
+    passes.shade.get_or_init(|| fullscreen(passes, device, &SHADE, "shade", &[SAMPLE_FORMAT], true))
 }
 
 pub fn run(

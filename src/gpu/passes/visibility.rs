@@ -1,7 +1,7 @@
 //! `shaders/visibility.wgsl`: which patch, at which (u,v), each pixel sees.
 
 use super::{DEPTH_FORMAT, PATCH_FORMAT, Passes, SURFACE_FORMAT, Scene, UV_FORMAT, Visible};
-use super::{bind, cleared, shader, whole};
+use super::{bind, cleared, whole};
 use crate::gpu::device::Device;
 use crate::gpu::proxy::{Draw, Proxy};
 use crate::gpu::records::{DrawRecord, ProxyVertex};
@@ -35,15 +35,17 @@ impl ProxyBuffers {
 
 pub fn pipeline<'a>(passes: &'a Passes, device: &Device, pipeline: Pipeline) -> &'a wgpu::RenderPipeline {
     match pipeline {
-        Pipeline::Limit => passes.visibility.get_or_init(|| create(device, "visible", &[PATCH_FORMAT, UV_FORMAT])),
-        Pipeline::Polygon => passes
-            .visibility_polygon
-            .get_or_init(|| create(device, "polygon", &[PATCH_FORMAT, UV_FORMAT, SURFACE_FORMAT, SURFACE_FORMAT])),
+        Pipeline::Limit => {
+            passes.visibility.get_or_init(|| create(passes, device, "visible", &[PATCH_FORMAT, UV_FORMAT]))
+        }
+        Pipeline::Polygon => passes.visibility_polygon.get_or_init(|| {
+            create(passes, device, "polygon", &[PATCH_FORMAT, UV_FORMAT, SURFACE_FORMAT, SURFACE_FORMAT])
+        }),
     }
 }
 
-fn create(device: &Device, entry: &str, formats: &[wgpu::TextureFormat]) -> wgpu::RenderPipeline {
-    let shader = shader(device, &VISIBILITY);
+fn create(passes: &Passes, device: &Device, entry: &str, formats: &[wgpu::TextureFormat]) -> wgpu::RenderPipeline {
+    let shader = passes.shader(device, &VISIBILITY);
     let targets: Vec<_> = formats.iter().map(|&format| Some(format.into())).collect();
     device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some("visibility"),

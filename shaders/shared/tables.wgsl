@@ -1,0 +1,40 @@
+// The tables of a surface. Host side: src/gpu/tables.
+
+// A texel a patch: first texel in `points`; kind (bits 0 to 7), refinement levels along u and v (4 bits each), levels that
+// are expanded (5 bits, from bit 16), groups of picked points (from bit 21); first texel in `scales`; first texel of the
+// matrix of its class in `points`.
+@group(0) @binding(0) var patches: texture_2d<u32>;
+// In blocks of BLOCK_ROWS rows. Rows of 4 points, 3 texels each: the four x, the four y, the four z. A regular patch has
+// 4 rows. An expanded level of an irregular patch has 9: those of the windows at u >= 1 (5), then those of the window at
+// u < 1 (4). After the expanded levels come the picked points, a group of 4 like a row, and one texel with the limit
+// normal at (0,0). The matrix of a class gives the levels after the expanded ones: for every level and every picked
+// point 9 texels, its weights in the 4 points of each of the 9 rows.
+@group(0) @binding(1) var points: texture_2d_array<f32>;
+// lambda^(n-1) and 2^n lambda^(n-1), a texel a level n, of each class.
+@group(0) @binding(2) var scales: texture_2d<f32>;
+
+fn point_texel(index: u32) -> vec4f {
+    let row = index / TABLE_WIDTH;
+    return textureLoad(points, vec2u(index % TABLE_WIDTH, row % BLOCK_ROWS), row / BLOCK_ROWS, 0);
+}
+
+fn is_irregular(record: vec4u) -> bool {
+    return (record.y & 255u) == KIND_IRREGULAR;
+}
+
+fn refinement_of(record: vec4u) -> vec2u {
+    return vec2u(record.y >> 8u, record.y >> 12u) & vec2u(15u);
+}
+
+fn expanded_levels(record: vec4u) -> u32 {
+    return (record.y >> 16u) & 31u;
+}
+
+fn groups_of(record: vec4u) -> u32 {
+    return record.y >> 21u;
+}
+
+// Where the limit normal at (0,0) of an irregular patch is.
+fn normal_texel(record: vec4u) -> u32 {
+    return record.x + expanded_levels(record) * LEVEL_TEXELS + 3u * groups_of(record);
+}

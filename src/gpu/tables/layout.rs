@@ -1,0 +1,180 @@
+//! The three layouts of design.md 3.2 and what they take.
+
+use super::basis::Basis;
+use super::{PatchSource, TABLE_LEVELS};
+use crate::gpu::shader::{LEVEL_TEXELS, SCALE_LEVELS};
+use crate::stam::LimitSurface;
+use rayon::prelude::*;
+use std::collections::HashSet;
+use std::fmt;
+use std::str::FromStr;
+
+/// Memory that tables may take before [`TableLayout::Auto`] prefers the smallest layout to the fastest: half of the
+/// smallest adapter that professional programs still ask for (2 GiB), which leaves as much for pictures; a software
+/// adapter takes it from the machine, where a million creased faces should fit in 6 GiB (design.md 8, "scale").
+pub const BUDGET: u64 = 1 << 30;
+
+/// What is not worth saving: below it the fastest layout is taken. (Measured on lavapipe, built-in sample at 2048^2 samples:
+/// the limit pass takes 0.15 s expanded and 0.18 s hybrid, whose shader has one more loop.)
+const AMPLE: u64 = 8 << 20;
+
+/// Levels that the hybrid layout stores point by point: 1 - 4^-4 of the parameter area.
+const HYBRID_LEVELS: usize = 4;
+/// Texels of a regular patch: 4 rows of 4 points, x, y and z each.
+const REGULAR_TEXELS: usize = 12;
+
+/// How the levels of irregular patches are stored. The surface is the same to the rounding of f32.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum TableLayout {
+    /// Expanded where that is little (8 MiB) or no more than hybrid; else hybrid; compact where that exceeds [`BUDGET`] or
+    /// the adapter.
+    #[default]
+    Auto,
+    /// Every level of every patch: fastest, 10.4 kB an irregular patch.
+    Expanded,
+    /// A few points a patch, matrices a class: smallest, but every pixel of an irregular patch combines its points.
+    Compact,
+    /// Levels 1 to 4 expanded, the rest compact: as fast as expanded but for 1/256 of a patch, under 2 kB.
+    Hybrid,
+}
+
+impl TableLayout {
+    /// The three layouts that `Auto` chooses from.
+    pub const ALL: [Self; 3] = [Self::Expanded, Self::Compact, Self::Hybrid];
+
+    /// Levels stored point by point.
+    fn expanded_levels(self) -> usize {
+        match self {
+            Self::Expanded => TABLE_LEVELS,
+            Self::Compact => 0,
+            Self::Hybrid | Self::Auto => HYBRID_LEVELS,
+        }
+    }
+}
+
+impl fmt::Display for TableLayout {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Auto => "auto",
+            Self::Expanded => "expanded",
+            Self::Compact => "compact",
+            Self::Hybrid => "hybrid",
+        })
+    }
+}
+
+impl FromStr for TableLayout {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        let all = [Self::Auto, Self::Expanded, Self::Compact, Self::Hybrid];
+        let found = all.into_iter().find(|layout| layout.to_string() == name);
+        found.ok_or_else(|| format!("no table layout {name}: give auto, expanded, compact or hybrid"))
+    }
+}
+
+/// Bytes that the tables of a surface take on an adapter, without building them. `Auto`: those of its choice, if the
+/// adapter has room for it.
+pub fn bytes(surface: &LimitSurface, layout: TableLayout) -> u64 {
+    Plan::new(surface, layout, u64::MAX).bytes
+}
+
+/// Texels of points in the expanded layout.
+pub(super) fn expanded_texels(regular: usize, irregular: usize) -> u64 {
+    let levels = TABLE_LEVELS * LEVEL_TEXELS as usize + 1;
+    (regular * REGULAR_TEXELS + irregular * levels) as u64
+}
+
+/// A layout applied to a surface: where everything goes.
+#[derive(Debug)]
+pub(super) struct Plan {
+    pub layout: TableLayout,
+    /// Levels stored point by point of the patches that have a class.
+    pub expanded: usize,
+    /// The rest, class by class; empty where all levels are expanded.
+    pub bases: Vec<Basis>,
+    /// Texels in the table of points: matrices first, then patches.
+    pub texels: u64,
+    /// Bytes of all tables.
+    pub bytes: u64,
+}
+
+impl Plan {
+    /// Plans `layout`; `Auto` keeps to [`BUDGET`] and to `limit` texels of points.
+    pub fn new<S: PatchSource + ?Sized>(source: &S, layout: TableLayout, limit: u64) -> Plan {
+        let census = Census::new(source);
+        if layout != TableLayout::Auto {
+            return Plan::of(source, &census, layout);
+        }
+        let [expanded, hybrid] = [TableLayout::Expanded, TableLayout::Hybrid].map(|l| Plan::of(source, &census, l));
+        let plan = if expanded.bytes > AMPLE.max(hybrid.bytes) { hybrid } else { expanded };
+        match plan.bytes <= BUDGET && plan.texels <= limit {
+            true => plan,
+            false => {
+                let compact = Plan::of(source, &census, TableLayout::Compact);
+                if compact.bytes < plan.bytes { compact } else { plan }
+            }
+        }
+    }
+
+    fn of<S: PatchSource + ?Sized>(source: &S, census: &Census, layout: TableLayout) -> Plan {
+        let expanded = layout.expanded_levels();
+        let bases: Vec<Basis> = match expanded < TABLE_LEVELS {
+            true => source.classes().par_iter().map(|table| Basis::new(table, expanded + 1..=TABLE_LEVELS)).collect(),
+            false => Vec::new(),
+        };
+        let mut plan = Plan { layout, expanded, bases, texels: 0, bytes: 0 };
+        let matrices: usize = (0..plan.bases.len()).map(|class| plan.matrix_texels(class)).sum();
+        let irregular: usize =
+            census.classes.iter().enumerate().map(|(class, &count)| count * plan.patch_texels(true, Some(class))).sum();
+        let rest = census.regular * REGULAR_TEXELS + census.classless * plan.patch_texels(true, None);
+        plan.texels = (matrices + irregular + rest) as u64;
+        plan.bytes =
+            16 * (source.count() as u64 + plan.texels) + 8 * u64::from(SCALE_LEVELS) * census.eigenvalues as u64;
+        plan
+    }
+
+    /// Texels of a patch: its expanded levels, its picked points in groups of 4 (x, y and z each), its normal.
+    pub fn patch_texels(&self, irregular: bool, class: Option<usize>) -> usize {
+        let levels = |count: usize| count * LEVEL_TEXELS as usize + 1;
+        match (irregular, class.and_then(|class| self.bases.get(class))) {
+            (false, _) => REGULAR_TEXELS,
+            (true, Some(basis)) => levels(self.expanded) + 3 * basis.groups(),
+            (true, None) => levels(TABLE_LEVELS),
+        }
+    }
+
+    /// Texels of the matrix of a class: 9 rows of 4 points for each picked point of each level.
+    pub fn matrix_texels(&self, class: usize) -> usize {
+        (TABLE_LEVELS - self.expanded) * 4 * self.bases[class].groups() * (LEVEL_TEXELS / 3) as usize
+    }
+}
+
+/// How many patches there are of each class.
+struct Census {
+    regular: usize,
+    classes: Vec<usize>,
+    /// Irregular patches without a class.
+    classless: usize,
+    /// Different values of lambda.
+    eigenvalues: usize,
+}
+
+impl Census {
+    fn new<S: PatchSource + ?Sized>(source: &S) -> Census {
+        let mut census = Census { regular: 0, classes: vec![0; source.classes().len()], classless: 0, eigenvalues: 0 };
+        let mut eigenvalues = HashSet::new();
+        for patch in 0..source.count() {
+            match (source.is_irregular(patch), source.class(patch)) {
+                (false, _) => census.regular += 1,
+                (true, Some(class)) => {
+                    census.classes[class] += 1;
+                    eigenvalues.insert(source.classes()[class].lambda.to_bits());
+                }
+                (true, None) => census.classless += 1,
+            }
+        }
+        census.eigenvalues = eigenvalues.len() + usize::from(census.classless > 0);
+        census
+    }
+}

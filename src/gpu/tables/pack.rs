@@ -1,0 +1,155 @@
+//! Fills the textures.
+
+use super::basis::Basis;
+use super::layout::Plan;
+use super::{PatchNet, PatchSource, TABLE_LEVELS};
+use crate::gpu::GpuError;
+use crate::gpu::device::Device;
+use crate::gpu::shader::{KIND_IRREGULAR, KIND_REGULAR, SCALE_LEVELS};
+use crate::stam::Net;
+use glam::DVec3;
+use rayon::prelude::*;
+use std::collections::HashMap;
+
+/// Texels that are computed before they are handed to the adapter: 16 MiB.
+const BATCH: usize = 1 << 20;
+
+/// First points of the windows' rows in a level's grid of 5x5 points without the first: the rows of
+/// the windows at u >= 1, then those at u < 1.
+const WINDOW_ROWS: [usize; 9] = [0, 5, 10, 15, 20, 4, 9, 14, 19];
+
+/// Contents of the textures; the points are on the adapter already.
+pub(super) struct Packed {
+    pub points: wgpu::Texture,
+    pub records: Vec<[u32; 4]>,
+    pub scales: Vec<[f32; 2]>,
+    pub origins: Vec<DVec3>,
+    pub cells: Vec<([u8; 2], u8)>,
+}
+
+/// What the parallel part finds out about a patch.
+struct Placed {
+    record: [u32; 4],
+    cell: ([u8; 2], u8),
+    origin: DVec3,
+    lambda: Option<f64>,
+}
+
+pub(super) fn pack<S: PatchSource + ?Sized>(
+    device: &Device,
+    source: &S,
+    plan: &Plan,
+    unit: f64,
+) -> Result<Packed, GpuError> {
+    let format = wgpu::TextureFormat::Rgba32Float;
+    let mut writer = device.block_table("the points of the patches", plan.texels, format)?;
+    let mut next = 0;
+    let mut matrices = Vec::with_capacity(plan.bases.len());
+    for (class, basis) in plan.bases.iter().enumerate() {
+        let size = plan.matrix_texels(class);
+        place_matrix(basis, writer.room(size));
+        writer.flush();
+        matrices.push(next as u32);
+        next += size;
+    }
+
+    let count = source.count();
+    let (mut records, mut origins, mut cells) =
+        (Vec::with_capacity(count), Vec::with_capacity(count), Vec::with_capacity(count));
+    let mut scales = Scales::default();
+    while records.len() < count {
+        let mut jobs: Vec<(usize, usize, usize)> = Vec::new();
+        let start = next;
+        while records.len() + jobs.len() < count && next - start < BATCH {
+            let patch = records.len() + jobs.len();
+            let size = plan.patch_texels(source.is_irregular(patch), source.class(patch));
+            jobs.push((patch, next, size));
+            next += size;
+        }
+        let mut rest = writer.room(next - start);
+        let mut slots = Vec::with_capacity(jobs.len());
+        for &(patch, first, size) in &jobs {
+            let (slot, after) = rest.split_at_mut(size);
+            slots.push((patch, first, slot));
+            rest = after;
+        }
+        let place = |(patch, first, slot): (usize, usize, &mut [[f32; 4]])| {
+            let class = source.class(patch).filter(|&class| class < plan.bases.len());
+            let basis = class.map(|class| &plan.bases[class]);
+            let levels = basis.map_or(TABLE_LEVELS, |basis| basis.deepest().max(plan.expanded));
+            let mut placed = place(source.patch(patch, levels), plan.expanded, basis, slot, unit);
+            placed.record[0] = first as u32;
+            placed.record[3] = class.map_or(0, |class| matrices[class]);
+            placed
+        };
+        let placed: Vec<Placed> = slots.into_par_iter().map(place).collect();
+        writer.flush();
+        for mut p in placed {
+            p.record[2] = p.lambda.map_or(0, |lambda| scales.first(lambda));
+            records.push(p.record);
+            origins.push(p.origin);
+            cells.push(p.cell);
+        }
+    }
+    Ok(Packed { points: writer.finish()?, records, scales: scales.texels, origins, cells })
+}
+
+/// lambda^m and 2^(m+1) lambda^m for each level m+1 of each lambda.
+#[derive(Default)]
+struct Scales {
+    texels: Vec<[f32; 2]>,
+    known: HashMap<u64, u32>,
+}
+
+impl Scales {
+    fn first(&mut self, lambda: f64) -> u32 {
+        *self.known.entry(lambda.to_bits()).or_insert_with(|| {
+            let first = self.texels.len() as u32;
+            let scale = |m: i32| [lambda.powi(m) as f32, (2.0 * (2.0 * lambda).powi(m)) as f32];
+            self.texels.extend((0..SCALE_LEVELS as i32).map(scale));
+            first
+        })
+    }
+}
+
+/// The matrix of a class: level by level, picked point by picked point, its weights in the 9 rows of a level.
+fn place_matrix(basis: &Basis, texels: &mut [[f32; 4]]) {
+    let picked = 4 * basis.groups();
+    for (i, texel) in texels.iter_mut().enumerate() {
+        let (row, k, level) = (WINDOW_ROWS[i % 9], i / 9 % picked, i / 9 / picked);
+        *texel = std::array::from_fn(|i| basis.row(level, row + i).get(k).map_or(0.0, |&weight| weight as f32));
+    }
+}
+
+/// Writes the texels of one patch; the record lacks what other patches decide.
+fn place(net: PatchNet, expanded: usize, basis: Option<&Basis>, texels: &mut [[f32; 4]], unit: f64) -> Placed {
+    let PatchNet { levels: cell, transition, net, normal } = net;
+    let mut at = 0;
+    let mut row = |points: &[DVec3]| {
+        let local: [DVec3; 4] = std::array::from_fn(|k| points[k] / unit);
+        texels[at] = local.map(|p| p.x as f32);
+        texels[at + 1] = local.map(|p| p.y as f32);
+        texels[at + 2] = local.map(|p| p.z as f32);
+        at += 3;
+    };
+    let (origin, kind, levels, groups, lambda) = match net {
+        Net::Regular(points) => {
+            let origin = points[5];
+            points.map(|p| p - origin).chunks_exact(4).for_each(row);
+            (origin, KIND_REGULAR, 0, 0, None)
+        }
+        Net::Irregular { limit, lambda, levels } => {
+            let stored = if basis.is_some() { expanded } else { levels.len().min(TABLE_LEVELS) };
+            levels[..stored].iter().for_each(|grid| WINDOW_ROWS.iter().for_each(|&i| row(&grid[i..i + 4])));
+            let mut picked: Vec<DVec3> =
+                basis.iter().flat_map(|basis| &basis.picked).map(|&[level, point]| levels[level - 1][point]).collect();
+            picked.resize(picked.len().next_multiple_of(4), DVec3::ZERO);
+            picked.chunks_exact(4).for_each(&mut row);
+            let [x, y, z] = normal.as_vec3().to_array();
+            texels[at] = [x, y, z, 0.0];
+            (limit, KIND_IRREGULAR, stored as u32, picked.len() as u32 / 4, Some(lambda))
+        }
+    };
+    let kind = kind | u32::from(cell[0]) << 8 | u32::from(cell[1]) << 12;
+    Placed { record: [0, kind | levels << 16 | groups << 21, 0, 0], cell: (cell, transition), origin, lambda }
+}
