@@ -69,14 +69,16 @@ fn limit_point(record: vec4u, uv: vec2f) -> LimitPoint {
     var position = vec3f(0.0);
     var du = vec3f(0.0);
     var dv = vec3f(0.0);
+    let rb = row_weights(bv, 1.0, record);
+    let rc = row_weights(cv, 0.0, record);
     for (var j = 0u; j < 4u; j++) {
         let x = point_texel(first + 3u * j);
         let y = point_texel(first + 3u * j + 1u);
         let z = point_texel(first + 3u * j + 2u);
         let line = vec3f(dot(x, bu), dot(y, bu), dot(z, bu));
-        position += line * bv[j];
-        du += vec3f(dot(x, cu), dot(y, cu), dot(z, cu)) * bv[j];
-        dv += line * cv[j];
+        position += line * rb[j];
+        du += vec3f(dot(x, cu), dot(y, cu), dot(z, cu)) * rb[j];
+        dv += line * rc[j];
     }
     // Not in a branch round the loop above: software adapters compute both sides. This loop mostly ends at once, but on
     // them it costs the pass a quarter even so (it spills registers); hence the constant.

@@ -5,7 +5,8 @@
 // matrix of its class in `points`.
 @group(0) @binding(0) var patches: texture_2d<u32>;
 // In blocks of BLOCK_ROWS rows. Rows of 4 points, 3 texels each: the four x, the four y, the four z. A regular patch has
-// 4 rows. An expanded level of an irregular patch has 9: those of the windows at u >= 1 (5), then those of the window at
+// 4 rows, each but the first as its difference from the one before: strips along creases are so thin that dv would
+// lose its digits in the difference of points. An expanded level of an irregular patch has 9: those of the windows at u >= 1 (5), then those of the window at
 // u < 1 (4). After the expanded levels come the picked points, a group of 4 like a row, and one texel with the limit
 // normal at (0,0). The matrix of a class gives the levels after the expanded ones: for every level and every picked
 // point 9 texels, its weights in the 4 points of each of the 9 rows.
@@ -20,6 +21,11 @@ fn point_texel(index: u32) -> vec4f {
 
 fn is_irregular(record: vec4u) -> bool {
     return (record.y & 255u) == KIND_IRREGULAR;
+}
+
+// Weights of the rows as they are stored, from those of the points; `sum` is that of the weights.
+fn row_weights(w: vec4f, sum: f32, record: vec4u) -> vec4f {
+    return select(vec4f(sum, w.y + w.z + w.w, w.z + w.w, w.w), w, is_irregular(record));
 }
 
 fn refinement_of(record: vec4u) -> vec2u {

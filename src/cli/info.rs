@@ -38,6 +38,8 @@ struct Info {
     creasing: &'static str,
     /// Patches by kind.
     patches: BTreeMap<&'static str, usize>,
+    /// Patches whose extraordinary vertex has no tangent plane.
+    without_tangent_plane: usize,
     /// Patches by depth in the quadtree of their ptex face.
     patch_depths: BTreeMap<u8, usize>,
     /// Classes of irregular patches.
@@ -92,6 +94,8 @@ fn collect(mesh: &SubdivMesh, surface: &LimitSurface, control: &Level) -> Info {
         },
         ..Info::default()
     };
+    let classes = (0..surface.patches().len()).filter_map(|patch| surface.class(patch));
+    info.without_tangent_plane = classes.filter(|&class| !surface.classes()[class].has_tangent_plane()).count();
     for &size in &mesh.face_sizes {
         *info.face_sizes.entry(size).or_default() += 1;
     }
@@ -188,6 +192,7 @@ fn describe(info: &Info) -> String {
         ("boundary rule", info.boundary.to_owned()),
         ("creasing rule", info.creasing.to_owned()),
         ("patches", format!("{} (all exact)", list(&info.patches))),
+        ("without tangent plane", info.without_tangent_plane.to_string()),
         ("patches by depth", list(&info.patch_depths)),
         ("classes", format!("{} ({} of matrices)", info.classes, mebibytes(info.class_table_bytes as f64))),
         ("GPU tables", mebibytes(info.gpu_table_bytes as f64)),

@@ -203,6 +203,18 @@ impl RingClass {
         points
     }
 
+    /// Whether the surface has a tangent plane at the vertex (docs/LIMIT.md, section 5). Not so for rings of two faces,
+    /// cones, and where directions inside a sector outgrow those along its edges: creases of five faces and more on a
+    /// side, corners of three and more. The normal there is the limit inside the patch.
+    pub fn has_tangent_plane(&self) -> bool {
+        match (self.closed, self.tip) {
+            (true, Tip::Smooth) => self.faces > 2,
+            (true, _) => false,
+            (false, Tip::Crease) => self.faces < 5,
+            (false, _) => self.faces < 3,
+        }
+    }
+
     /// Number of control points: the vertex, its spokes, the opposite corners of its faces, the outer points (2N+8 for
     /// a smooth vertex of valence N, as in Stam 1998).
     pub fn support(&self) -> usize {

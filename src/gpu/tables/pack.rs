@@ -135,7 +135,10 @@ fn place(net: PatchNet, expanded: usize, basis: Option<&Basis>, texels: &mut [[f
     let (origin, kind, levels, groups, lambda) = match net {
         Net::Regular(points) => {
             let origin = points[5];
-            points.map(|p| p - origin).chunks_exact(4).for_each(row);
+            // Each row but the first as its difference from the one before: see shaders/shared/tables.wgsl.
+            let before = |k: usize| if k < 4 { origin } else { points[k - 4] };
+            let rows: [DVec3; 16] = std::array::from_fn(|k| points[k] - before(k));
+            rows.chunks_exact(4).for_each(row);
             (origin, KIND_REGULAR, 0, 0, None)
         }
         Net::Irregular { limit, lambda, levels } => {
