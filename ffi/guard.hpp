@@ -8,6 +8,7 @@
 #include <opensubdiv/far/topologyRefiner.h>
 #include <opensubdiv/version.h>
 
+#include <cstdint>
 #include <cstring>
 #include <exception>
 #include <memory>
@@ -24,8 +25,27 @@ namespace catoptric {
 namespace Far = OpenSubdiv::Far;
 namespace Sdc = OpenSubdiv::Sdc;
 
-// Message of the last failure on this thread.
-std::string &message();
+// How the call in progress on this thread went.
+struct Outcome {
+    bool failed = false;
+    std::string message;
+
+    void clear() noexcept {
+        failed = false;
+        message.clear();
+    }
+    // Callable from OpenSubdiv's callbacks and from handlers, so it must not throw: without memory the text is lost, the
+    // failure is not.
+    void fail(char const *text) noexcept {
+        failed = true;
+        try {
+            message = text;
+        } catch (...) {
+            message.clear();
+        }
+    }
+};
+Outcome &outcome() noexcept;
 // Installs OpenSubdiv's global callbacks, once.
 void install_callbacks();
 std::unique_ptr<Far::TopologyRefiner> make_refiner(osd_mesh const &mesh);
@@ -40,21 +60,33 @@ struct Point {
 };
 static_assert(sizeof(Point) == 3 * sizeof(double), "points are packed triples");
 
+// Vertices of all levels, and `more`: an error where OpenSubdiv's 32-bit indices cannot count them.
+std::size_t count_points(Far::TopologyRefiner const &refiner, int64_t more = 0);
+
 // Refined points of all levels, one level after the other, level 0 (a copy of points) first.
 void interpolate(Far::TopologyRefiner const &refiner, double const *points, Point *out);
 
 // Runs body; an exception, or anything that OpenSubdiv reports as an error, becomes OSD_FAILED and a message.
 template <class Body> osd_status guard(Body &&body) noexcept {
+    outcome().clear();
     try {
         install_callbacks();
-        message().clear();
         body();
     } catch (std::exception const &error) {
-        message() = error.what();
+        outcome().fail(error.what());
     } catch (...) {
-        message() = "unknown C++ exception";
+        outcome().fail("unknown C++ exception");
     }
-    return message().empty() ? OSD_OK : OSD_FAILED;
+    return outcome().failed ? OSD_FAILED : OSD_OK;
+}
+
+// Hands out what make returns, a unique_ptr, unless the call failed: OpenSubdiv may report an error and return an object
+// all the same, which is released here then.
+template <class Object, class Make> osd_status create(Object **out, Make &&make) noexcept {
+    std::unique_ptr<Object> object;
+    osd_status const status = guard([&] { object = make(); });
+    if (status == OSD_OK) *out = object.release();
+    return status;
 }
 
 inline void require(bool condition, char const *what) {

@@ -3,7 +3,8 @@
  *
  * Conventions
  *  - Every function that can fail returns an osd_status; after OSD_FAILED, osd_message() says why (one line, valid until
- *    the next call on the same thread). Outputs are unspecified after a failure.
+ *    the next call on the same thread). After a failure arrays are unspecified, and handles untouched: there is nothing
+ *    to release.
  *  - Arrays are owned by the caller and sized as stated; points are x, y, z in double precision.
  *  - Objects made by *_create are owned by the caller and released once by the matching *_destroy (NULL is allowed).
  *  - The caller validates meshes: OpenSubdiv reads out of bounds on indices that are out of range.
@@ -20,7 +21,7 @@ extern "C" {
 typedef enum osd_status { OSD_OK = 0, OSD_FAILED = 1 } osd_status;
 
 const char *osd_message(void);
-/* Version of the library in use, such as "3.5.0". */
+/* Version of the headers that the shim was compiled with, such as "3.5.0". */
 const char *osd_version(void);
 
 /* ---- control mesh ------------------------------------------------------------------------------------------------ */
@@ -118,6 +119,13 @@ typedef struct osd_far osd_far;
 osd_status osd_far_create(const osd_mesh *mesh, const double *points, int32_t isolation, osd_far **out);
 void osd_far_destroy(osd_far *far);
 
+/* What a patch table holds. */
+typedef struct osd_far_sizes {
+    int64_t patches;
+    int64_t bytes;                    /* control vertex indices, patch parameters, and its points in double precision */
+} osd_far_sizes;
+osd_status osd_far_measure(const osd_far *far, osd_far_sizes *out);
+
 /* Bfr surfaces in double precision; approximation levels in 1..10 (the library's defaults are 2 and 6). */
 typedef struct osd_bfr osd_bfr;
 osd_status osd_bfr_create(const osd_mesh *mesh, const double *points, int32_t smooth_level, int32_t sharp_level,
@@ -126,12 +134,13 @@ void osd_bfr_destroy(osd_bfr *bfr);
 
 /*
  * Evaluates `count` samples. faces: ptex faces; uv: 2 * count, in [0,1]; jets: 9 * count, position, d/du, d/dv by the
- * parameters of the ptex face; answers: count, an osd_answer each. Neither function is thread-safe on one object.
+ * parameters of the ptex face; cells: count, the side of the patch that answered in those parameters (1 for Bfr, whose
+ * exact surfaces are whole faces); answers: count, an osd_answer each. Neither function is thread-safe on one object.
  */
 osd_status osd_far_evaluate(osd_far *far, int32_t count, const int32_t *faces, const double *uv, double *jets,
-                            uint8_t *answers);
+                            double *cells, uint8_t *answers);
 osd_status osd_bfr_evaluate(osd_bfr *bfr, int32_t count, const int32_t *faces, const double *uv, double *jets,
-                            uint8_t *answers);
+                            double *cells, uint8_t *answers);
 
 #ifdef __cplusplus
 }

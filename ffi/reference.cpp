@@ -8,6 +8,7 @@
 #include <opensubdiv/far/patchTableFactory.h>
 
 #include <algorithm>
+#include <cfloat>
 
 using namespace catoptric;
 namespace Bfr = OpenSubdiv::Bfr;
@@ -44,10 +45,13 @@ struct osd_bfr {
     std::vector<double> patch_points;
 };
 
+// Parameters below the normal range count as 0: end caps divide by them, which overflows.
+static double flushed(double parameter) { return parameter < DBL_MIN ? 0.0 : parameter; }
+
 extern "C" {
 
 osd_status osd_far_create(const osd_mesh *mesh, const double *points, int32_t isolation, osd_far **out) {
-    return guard([&] {
+    return create(out, [&] {
         require(isolation >= 1 && isolation <= 10, "isolation must be 1 to 10");
         auto refiner = make_refiner(*mesh);
 
@@ -65,27 +69,37 @@ osd_status osd_far_create(const osd_mesh *mesh, const double *points, int32_t is
         if (!far->table) throw std::runtime_error("OpenSubdiv made no patch table");
         far->map = std::make_unique<Far::PatchMap>(*far->table);
 
-        int const refined = refiner->GetNumVerticesTotal();
-        far->points.resize(refined + far->table->GetNumLocalPoints());
+        std::size_t const refined = count_points(*refiner);
+        far->points.resize(count_points(*refiner, far->table->GetNumLocalPoints()));
         interpolate(*refiner, points, far->points.data());
         if (far->table->GetNumLocalPoints() > 0) {
             Point const *source = far->points.data();
             Point *local = far->points.data() + refined;
             far->table->GetLocalPointStencilTable<double>()->UpdateValues(source, local);
         }
-        *out = far.release();
+        return far;
     });
 }
 
 void osd_far_destroy(osd_far *far) { delete far; }
 
+osd_status osd_far_measure(const osd_far *far, osd_far_sizes *out) {
+    return guard([&] {
+        out->patches = far->table->GetNumPatchesTotal();
+        out->bytes = int64_t(far->table->GetPatchControlVerticesTable().size() * sizeof(Far::Index) +
+                             far->table->GetPatchParamTable().size() * sizeof(Far::PatchParam) +
+                             far->points.size() * sizeof(Point));
+    });
+}
+
 osd_status osd_far_evaluate(osd_far *far, int32_t count, const int32_t *faces, const double *uv, double *jets,
-                            uint8_t *answers) {
+                            double *cells, uint8_t *answers) {
     return guard([&] {
         std::vector<double> p, du, dv;
         for (int32_t i = 0; i < count; ++i, jets += 9) {
             std::fill_n(jets, 9, 0.0);
-            double const u = uv[2 * i], v = uv[2 * i + 1];
+            cells[i] = 1.0;
+            double const u = flushed(uv[2 * i]), v = flushed(uv[2 * i + 1]);
             Far::PatchTable::PatchHandle const *handle = far->map->FindPatch(faces[i], u, v);
             if (!handle) {
                 answers[i] = OSD_ANSWER_NONE;
@@ -95,7 +109,9 @@ osd_status osd_far_evaluate(osd_far *far, int32_t count, const int32_t *faces, c
             p.resize(vertices.size()), du.resize(vertices.size()), dv.resize(vertices.size());
             far->table->EvaluateBasis<double>(*handle, u, v, p.data(), du.data(), dv.data());
             // The parameters of an n-gon's quadrants count from the n-gon: the derivatives come back doubled.
-            double const scale = far->table->GetPatchParam(*handle).NonQuadRoot() ? 0.5 : 1.0;
+            Far::PatchParam const param = far->table->GetPatchParam(*handle);
+            double const scale = param.NonQuadRoot() ? 0.5 : 1.0;
+            cells[i] = param.GetParamFraction();
             for (int j = 0; j < vertices.size(); ++j)
                 for (int k = 0; k < 3; ++k) {
                     double const x = far->points[vertices[j]].x[k];
@@ -111,7 +127,7 @@ osd_status osd_far_evaluate(osd_far *far, int32_t count, const int32_t *faces, c
 
 osd_status osd_bfr_create(const osd_mesh *mesh, const double *points, int32_t smooth_level, int32_t sharp_level,
                           osd_bfr **out) {
-    return guard([&] {
+    return create(out, [&] {
         require(smooth_level >= 1 && smooth_level <= 10 && sharp_level >= 1 && sharp_level <= 10,
                 "approximation levels must be 1 to 10");
         auto bfr = std::make_unique<osd_bfr>();
@@ -127,17 +143,18 @@ osd_status osd_bfr_create(const osd_mesh *mesh, const double *points, int32_t sm
             else
                 for (int corner = 0; corner < size; ++corner) bfr->ptex.push_back({face, corner});
         }
-        *out = bfr.release();
+        return bfr;
     });
 }
 
 void osd_bfr_destroy(osd_bfr *bfr) { delete bfr; }
 
 osd_status osd_bfr_evaluate(osd_bfr *bfr, int32_t count, const int32_t *faces, const double *uv, double *jets,
-                            uint8_t *answers) {
+                            double *cells, uint8_t *answers) {
     return guard([&] {
         for (int32_t i = 0; i < count; ++i, jets += 9) {
             std::fill_n(jets, 9, 0.0);
+            cells[i] = 1.0;
             require(faces[i] >= 0 && faces[i] < int32_t(bfr->ptex.size()), "ptex face out of range");
             osd_bfr::Ptex const ptex = bfr->ptex[faces[i]];
             if (!bfr->is_safe(ptex.face)) {
@@ -145,18 +162,19 @@ osd_status osd_bfr_evaluate(osd_bfr *bfr, int32_t count, const int32_t *faces, c
                 continue;
             }
             if (ptex.face != bfr->face) {
-                bfr->face = ptex.face;
+                bfr->face = -1; // until the surface is whole: what follows may throw
                 if (!bfr->factory->InitVertexSurface(ptex.face, &bfr->surface)) bfr->surface.Clear();
                 if (bfr->surface.IsValid()) {
                     bfr->patch_points.resize(3 * bfr->surface.GetNumPatchPoints());
                     bfr->surface.PreparePatchPoints(bfr->mesh_points.data(), 3, bfr->patch_points.data(), 3);
                 }
+                bfr->face = ptex.face;
             }
             if (!bfr->surface.IsValid()) {
                 answers[i] = OSD_ANSWER_NONE;
                 continue;
             }
-            double coordinate[2] = {uv[2 * i], uv[2 * i + 1]};
+            double coordinate[2] = {flushed(uv[2 * i]), flushed(uv[2 * i + 1])};
             double scale = 1.0;
             if (ptex.sub_face >= 0) {
                 double const sub[2] = {coordinate[0], coordinate[1]};

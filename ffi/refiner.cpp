@@ -7,16 +7,16 @@
 
 namespace catoptric {
 
-std::string &message() {
-    thread_local std::string text;
-    return text;
+Outcome &outcome() noexcept {
+    thread_local Outcome outcome;
+    return outcome;
 }
 
 void install_callbacks() {
     static std::once_flag once;
     std::call_once(once, [] {
         // The callbacks take no user data, so the message goes to the thread that made the call.
-        Far::SetErrorCallback([](Far::ErrorType, char const *text) { message() = text; });
+        Far::SetErrorCallback([](Far::ErrorType, char const *text) { outcome().fail(text); });
         Far::SetWarningCallback([](char const *) {});
     });
 }
@@ -52,9 +52,17 @@ std::unique_ptr<Far::TopologyRefiner> make_refiner(osd_mesh const &mesh) {
     using Factory = Far::TopologyRefinerFactory<Far::TopologyDescriptor>;
     std::unique_ptr<Far::TopologyRefiner> refiner(
         Factory::Create(topology, Factory::Options(Sdc::SCHEME_CATMARK, rules)));
-    if (!refiner && message().empty()) message() = "OpenSubdiv refused the topology without a reason";
-    if (!refiner) throw std::runtime_error(std::string(message()));
+    if (!refiner)
+        throw std::runtime_error(outcome().failed ? outcome().message
+                                                  : "OpenSubdiv refused the topology without a reason");
     return refiner;
+}
+
+std::size_t count_points(Far::TopologyRefiner const &refiner, int64_t more) {
+    int64_t count = more;
+    for (int i = 0; i < refiner.GetNumLevels(); ++i) count += refiner.GetLevel(i).GetNumVertices();
+    require(more >= 0 && count <= INT32_MAX, "the refined mesh has more points than 32-bit indices can count");
+    return std::size_t(count);
 }
 
 void interpolate(Far::TopologyRefiner const &refiner, double const *points, Point *out) {
@@ -96,12 +104,25 @@ uint8_t rule_of(Sdc::Crease::Rule rule) {
 
 extern "C" {
 
-const char *osd_message(void) { return message().c_str(); }
+const char *osd_message(void) {
+    bool const lost = outcome().failed && outcome().message.empty();
+    return lost ? "it failed without a message" : outcome().message.c_str();
+}
 
-const char *osd_version(void) { return "3.5.0"; }
+const char *osd_version(void) {
+    // 3.5.0 is 30500. Short enough to need no allocation, so this cannot throw.
+    static std::string const text = std::to_string(OPENSUBDIV_VERSION_NUMBER / 10000) + "." +
+                                    std::to_string(OPENSUBDIV_VERSION_NUMBER / 100 % 100) + "." +
+                                    std::to_string(OPENSUBDIV_VERSION_NUMBER % 100);
+    return text.c_str();
+}
 
 osd_status osd_refiner_create(const osd_mesh *mesh, osd_refiner **out) {
-    return guard([&] { *out = new osd_refiner{make_refiner(*mesh)}; });
+    return create(out, [&] {
+        auto refiner = std::make_unique<osd_refiner>();
+        refiner->refiner = make_refiner(*mesh);
+        return refiner;
+    });
 }
 
 void osd_refiner_destroy(osd_refiner *refiner) { delete refiner; }
@@ -117,6 +138,7 @@ osd_status osd_refiner_refine_adaptive(osd_refiner *handle, int32_t isolation, i
         options.useInfSharpPatch = true;
         options.useSingleCreasePatch = single_crease != 0;
         handle->refiner->RefineAdaptive(options);
+        count_points(*handle->refiner);
     });
 }
 
@@ -127,6 +149,7 @@ osd_status osd_refiner_refine_uniform(osd_refiner *handle, int32_t level) {
         Far::TopologyRefiner::UniformOptions options(level);
         options.fullTopologyInLastLevel = true;
         handle->refiner->RefineUniform(options);
+        count_points(*handle->refiner);
     });
 }
 

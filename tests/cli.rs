@@ -96,7 +96,17 @@ fn bad_usage_is_refused() {
         (&["render", "/no/such/file.obj"], "no such file"),
         (&["render", "--size", "0x0"], "WIDTHxHEIGHT"),
         (&["render", "--size", "99999x10"], "WIDTHxHEIGHT"),
-        (&["render", "--fov", "180"], "field of view 180"),
+        (&["render", "--fov", "180"], "field of view"),
+        (&["render", "--fov", "0"], "field of view"),
+        (&["render", "--fov", "nan"], "field of view"),
+        (&["render", "--light-normal", "0,0,0"], "--light-normal"),
+        (&["render", "--light-lines", "0,0,0"], "--light-lines"),
+        (&["render", "--light-normal", "0,0,2", "--light-lines", "0,0,-3"], "parallel"),
+        (&["eval", "--samples", "."], "folder"),
+        // Where to write is checked before there is work: these meshes do not even exist.
+        (&["verify", "no-such.obj", "--json", "no-such-folder/v.json"], "no-such-folder"),
+        (&["verify", "no-such.obj", "--json", "."], "it is a folder"),
+        (&["eval", "no-such.obj", "--samples", "no-such.csv", "-o", "no-such-folder/o.csv"], "no-such-folder"),
         (&["render", "--eye", "1,2"], "X,Y,Z"),
         (&["render", "--eye", "1,2,nan"], "X,Y,Z"),
         (&["render", "--pipeline", "magic"], "magic"),
@@ -127,11 +137,23 @@ fn bad_samples_are_refused_with_their_line() {
         ("face,u,v\n0,0.5\n", ":2: "),
         ("face,u,v\n-1,0.5,0.5\n", ":2: "),
         ("face,u,v\nzero,0.5,0.5\n", ":2: "),
+        ("face,u,v\n\n0,.5,.5\n\n\n0,2,0", ":6: u = 2"),
+        ("face,u,v\r\n\r\n0,.5,.5\r\n\r\n0,2,0\r\n", ":5: u = 2"),
+        ("\n\nface,u,v\n\n99999,0,0\n", ":5: ptex face"),
+        ("face,u,v\n\"0\",\"0.5\n\",0.5\n\n0,2\n", ":5: "),
     ] {
         let path = folder.file("samples.csv", text);
         let message = folder.refused(&["eval", "--samples", path.to_str().expect("UTF-8"), "-o", "out.csv"]);
         assert!(message.contains(expected), "{text:?}: {message}");
     }
+}
+
+#[test]
+fn a_header_that_is_not_text_is_named() {
+    let folder = Folder::new();
+    std::fs::write(folder.path("samples.csv"), b"face,u,\xff\n0,0,0\n").expect("a writable folder");
+    let message = folder.refused(&["eval", "--samples", "samples.csv", "-o", "out.csv"]);
+    assert!(message.contains("samples.csv:1: the header is not face,u,v"), "{message}");
 }
 
 /// Rows of a CSV file that `eval` wrote: numbers, and the kind.
@@ -172,6 +194,62 @@ fn evaluators_answer_in_order_and_agree() {
 }
 
 #[test]
+fn the_smallest_parameters_come_back_and_have_answers() {
+    let folder = Folder::new();
+    folder.file("samples.csv", "face,u,v\n0,5e-324,5e-324\n0,1e-305,1e-305\n0,1e-300,0.1\n0,0.30000000000000004,1\n");
+    for backend in ["cpu", "gpu", "osd"] {
+        let mesh = mesh("cube");
+        let flags = ["eval", "--samples", "samples.csv", "-o", "out.csv", "--backend", backend];
+        let output = folder.run(flags.iter().copied().chain([mesh.to_str().expect("UTF-8")]));
+        assert!(output.status.success(), "{backend}: {}", String::from_utf8_lossy(&output.stderr));
+        let text = std::fs::read_to_string(folder.path("out.csv")).expect("it is written");
+        let places: Vec<_> =
+            text.lines().skip(1).map(|line| line.split(',').take(3).collect::<Vec<_>>().join(",")).collect();
+        assert_eq!(places, ["0,5e-324,5e-324", "0,1e-305,1e-305", "0,1e-300,0.1", "0,0.30000000000000004,1"]);
+        let rows = rows(&folder.path("out.csv"));
+        assert!(rows.iter().all(|(numbers, _)| numbers.iter().all(|x| x.is_finite())), "{backend}: {text}");
+    }
+}
+
+/// As root every folder is writable: then there is nothing to see.
+#[cfg(unix)]
+#[test]
+fn a_locked_folder_is_told_without_the_temporary_name() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = Folder::new();
+    std::fs::create_dir(folder.path("locked")).expect("a folder");
+    std::fs::set_permissions(folder.path("locked"), PermissionsExt::from_mode(0o555)).expect("ours to lock");
+    if std::fs::write(folder.path("locked/probe"), "").is_ok() {
+        println!("this user may write anywhere");
+        return;
+    }
+    let message = folder.refused(&["verify", "--json", "locked/v.json"]);
+    assert!(message.contains("locked/v.json") && !message.contains(".part"), "{message}");
+}
+
+#[test]
+fn meshes_without_a_surface_are_no_pass() {
+    let folder = Folder::new();
+    folder.file("holes.obj", &format!("{QUAD}f 1 2 3 4\nt hole 1/0/0 0\n"));
+    folder.file("no_interior.obj", &format!("{QUAD}f 1 2 3 4\nt interpolateboundary 1/0/0 0\n"));
+    for mesh in ["holes.obj", "no_interior.obj"] {
+        let message = folder.refused(&["verify", mesh, "--json", "v.json"]);
+        assert!(message.contains("no face has a limit surface"), "{message}");
+    }
+    folder.file("tiny.obj", &format!("{}f 1 2 3 4\n", QUAD.replace('1', "1e-300")));
+    assert!(folder.refused(&["verify", "tiny.obj"]).contains("underflow"));
+}
+
+#[test]
+fn valence_is_told_as_what_the_mesh_has() {
+    let folder = Folder::new();
+    let points: String = (0..5000).map(|i| format!("v {i} {} 0\n", i * i)).collect();
+    let face: String = (1..=5000).map(|i| format!(" {i}")).collect();
+    folder.file("n_gon.obj", &format!("{points}f{face}\n"));
+    assert!(folder.refused(&["info", "n_gon.obj"]).contains("a face of 5000 corners or a vertex of valence 5000"));
+}
+
+#[test]
 fn holes_have_a_kind_and_no_numbers() {
     let folder = Folder::new();
     let samples = folder.file("samples.csv", "face,u,v\n5,0.5,0.5\n0,0.5,0.5\n");
@@ -195,6 +273,14 @@ fn info_counts_features_and_patches() {
     assert_eq!(info["interior_valences"]["5"], 1);
     let text = folder.run(["info".as_ref(), mesh("pole_5").as_os_str()]);
     assert!(String::from_utf8_lossy(&text.stdout).contains("smooth: 5"));
+    // OpenSubdiv's share costs a refinement, so it is there for the asking.
+    assert!(info.get("opensubdiv_patches").is_none());
+    let output = folder.run(["info".as_ref(), mesh("pole_5").as_os_str(), "--json".as_ref(), "--peers".as_ref()]);
+    let info: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert!(info["opensubdiv_patches"].as_u64() > info["patches"]["regular"].as_u64());
+    assert!(info["opensubdiv_bytes"].as_u64() > Some(1000));
+    let text = folder.run(["info".as_ref(), mesh("pole_5").as_os_str(), "--peers".as_ref()]);
+    assert!(String::from_utf8_lossy(&text.stdout).contains("OpenSubdiv's patches"));
 }
 
 #[test]
@@ -207,6 +293,11 @@ fn verify_passes_and_says_so_everywhere() {
     let report: serde_json::Value = serde_json::from_slice(&text).expect("JSON");
     assert_eq!(report["pass"], true, "{}", String::from_utf8_lossy(&output.stdout));
     assert!(output.status.success());
+    assert!(String::from_utf8_lossy(&output.stdout).contains("pass: 2 meshes against"));
+    let row = &report["meshes"][0]["tiers"][0];
+    assert_eq!((&row["failed"], &row["normals_skipped"]), (&0.into(), &0.into()));
+    let one = folder.run(["verify".as_ref(), mesh("cube").as_os_str(), "--size".as_ref(), "32x32".as_ref()]);
+    assert!(String::from_utf8_lossy(&one.stdout).contains("pass: 1 mesh against"));
     let tiers = |mesh: usize| -> std::collections::BTreeSet<String> {
         let rows = report["meshes"][mesh]["tiers"].as_array().expect("rows");
         rows.iter().map(|row| row["tier"].as_str().expect("a name").to_owned()).collect()

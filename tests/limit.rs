@@ -2,7 +2,7 @@
 
 mod common;
 
-use catoptric::mesh;
+use catoptric::mesh::{self, SubdivMesh};
 use catoptric::patch::PatchKind;
 use catoptric::stam::LimitSurface;
 use common::{angle_deg as angle, meshes};
@@ -81,6 +81,113 @@ fn derivatives_are_those_of_the_positions() {
     }
 }
 
+/// Quads round vertex 0 over an angle, on a bumpy cap: closed or a boundary fan.
+fn fan(faces: usize, closed: bool) -> SubdivMesh {
+    let spokes = if closed { faces } else { faces + 1 };
+    let angle = if closed { std::f64::consts::TAU } else { 1.1 * std::f64::consts::PI } / faces as f64;
+    let bump = |x: f64, y: f64| DVec3::new(x, y, 0.2 * x * x - 0.13 * y * y + 0.1 * (3.0 * x + y).sin());
+    let at = |place: f64, radius: f64| {
+        let (sin, cos) = (place * angle).sin_cos();
+        bump(radius * cos, radius * sin)
+    };
+    let mut points = vec![bump(0.0, 0.0)];
+    points.extend((0..spokes).map(|i| at(i as f64, 1.0 + 0.1 * (i as f64).cos())));
+    points.extend((0..faces).map(|i| at(i as f64 + 0.5, 1.5 + 0.1 * (2.0 * i as f64).sin())));
+    let quad = |i: usize| [0, 1 + i, 1 + spokes + i, 1 + (i + 1) % spokes].map(|v| v as u32);
+    SubdivMesh {
+        name: format!("fan {faces}"),
+        points,
+        face_sizes: vec![4; faces],
+        face_vertices: (0..faces).flat_map(quad).collect(),
+        boundary: mesh::Boundary::EdgeOnly,
+        ..SubdivMesh::default()
+    }
+}
+
+/// At a smooth vertex, on a crease and at a dart all faces give the vertex the same normal, and the normals inside tend to
+/// it.
+#[test]
+fn faces_agree_on_the_normal_at_their_vertex() {
+    let mut worst = 0.0f64;
+    for faces in (1..=12).chain([20, 40]) {
+        let mut fans = vec![(fan(faces, false), "crease")];
+        if faces >= 3 {
+            let mut dart = fan(faces, true);
+            dart.creases.push(mesh::Crease { vertices: [0, 1], sharpness: 10.0 });
+            fans.extend([(fan(faces, true), "smooth"), (dart, "dart")]);
+        }
+        for (mesh, name) in fans {
+            let surface = LimitSurface::new(&mesh).expect("it has a surface");
+            let normal = |face: usize, h: f64| surface.evaluate_ptex(face as u32, [h, h]).expect("no hole").1.normal;
+            let first = normal(0, 0.0);
+            for face in 0..faces {
+                let spread = angle(normal(face, 0.0), first);
+                assert!(spread < 1e-9, "{name} {faces} face {face}: {spread:e} degrees apart");
+                worst = worst.max(spread);
+                // Towards the vertex the angle shrinks at last; how fast is the class's affair: at 1/n for one face, by
+                // ratios so close to 1 for many that 50 levels do not show it (stam::class tests go further).
+                if faces > 12 {
+                    continue;
+                }
+                let [far, near] = [1e-6, 1e-15].map(|h| angle(normal(face, h), first));
+                assert!(near < far.max(1e-9), "{name} {faces} face {face}: {far:e}, then {near:e} degrees");
+            }
+        }
+    }
+    println!("largest spread {worst:e} degrees");
+}
+
+/// Parameters beyond any level, down to the smallest double, are answered with finite numbers.
+#[test]
+fn the_smallest_parameters_are_answered() {
+    let surface = LimitSurface::new(&fan(5, true)).expect("it has a surface");
+    for h in [1e-15, 1e-100, 1e-300, 1e-302, 1e-305, f64::MIN_POSITIVE, 5e-324, 0.0] {
+        for uv in [[h, h], [h, 0.0], [0.0, h]] {
+            let jet = surface.evaluate_ptex(0, uv).expect("no hole").1;
+            assert!(jet.position.is_finite() && jet.du.is_finite() && jet.dv.is_finite(), "{uv:?} {jet:?}");
+            assert!((jet.normal.length() - 1.0).abs() < 1e-12, "{uv:?} {jet:?}");
+        }
+    }
+}
+
+/// A folded sheet: along its fold a derivative vanishes; the normal there is the limit of those inside.
+#[test]
+fn normals_exist_where_derivatives_vanish() {
+    let mut pillow = fan(1, false);
+    pillow.points =
+        [[0.0, 0.0, 0.0], [1.0, 0.1, 0.2], [1.2, 0.9, 0.5], [0.1, 1.0, 0.1]].map(DVec3::from_array).to_vec();
+    pillow.face_sizes = vec![4; 2];
+    pillow.face_vertices = vec![0, 1, 2, 3, 0, 3, 2, 1];
+    let surface = LimitSurface::new(&pillow).expect("it has a surface");
+    for t in [0.1, 0.35, 0.5, 0.8] {
+        for (on, near) in [([0.0, t], [1e-7, t]), ([t, 0.0], [t, 1e-7]), ([1.0, t], [1.0 - 1e-7, t])] {
+            let [a, b] = [on, near].map(|uv| surface.evaluate_ptex(0, uv).expect("no hole").1.normal);
+            assert!(a == DVec3::ZERO || angle(a, b) < 1e-3, "{on:?}: {a} {b}");
+        }
+    }
+}
+
+/// Second derivatives against central differences of the first ones.
+#[test]
+fn second_derivatives_are_those_of_the_first() {
+    const STEP: f64 = 1e-6;
+    for mesh in meshes() {
+        let surface = LimitSurface::new(&mesh).expect("it has a surface");
+        for i in 0..surface.patches().len() {
+            let uv = [0.37, 0.58];
+            let jet = surface.evaluate_second(i, uv);
+            let at = |du: f64, dv: f64| surface.evaluate(i, [uv[0] + du, uv[1] + dv]);
+            let half = 0.5 / STEP;
+            let duu = (at(STEP, 0.0).du - at(-STEP, 0.0).du) * half;
+            let duv = (at(0.0, STEP).du - at(0.0, -STEP).du) * half;
+            let dvv = (at(0.0, STEP).dv - at(0.0, -STEP).dv) * half;
+            let error = duu.distance(jet.duu).max(duv.distance(jet.duv)).max(dvv.distance(jet.dvv));
+            // Rounding of the first derivatives over the step, 1e-16 / 1e-6, and a fourth derivative times its square.
+            assert!(error < 1e-8 * surface.diagonal(), "{} patch {i}: {error:e}", mesh.name);
+        }
+    }
+}
+
 /// Towards an extraordinary vertex the normal tends to the one given there, the position to the limit position.
 #[test]
 fn the_vertex_is_the_limit_of_its_patch() {
@@ -95,7 +202,9 @@ fn the_vertex_is_the_limit_of_its_patch() {
             let near = surface.evaluate(i, [1e-9, 1e-9]);
             assert!(vertex.position.distance(near.position) < 1e-4 * surface.diagonal(), "{} {i}", mesh.name);
             assert!(vertex.du.is_finite() && vertex.dv.is_finite() && near.normal.is_finite());
-            if patch.kind == PatchKind::Smooth && vertex.normal != DVec3::ZERO {
+            let class = surface.classes()[surface.class(i).expect("an irregular patch has a class")];
+            // Towards a pole of 40 faces the normal hardly turns in 30 levels: the ratio is 0.99 (0.6473 / 0.6527).
+            if patch.kind == PatchKind::Smooth && class.faces <= 12 && vertex.normal != DVec3::ZERO {
                 // 30 levels in, the ratio of the next eigenvalue to lambda (0.82 at most for valence 8) is below 3e-3.
                 let turned = angle(vertex.normal, near.normal);
                 assert!(turned < 0.5, "{} patch {i}: {turned} degrees", mesh.name);

@@ -18,8 +18,66 @@ fn refusal<T>(result: Result<T, Error>) -> String {
 }
 
 #[test]
-fn the_library_is_the_one_we_checked() {
+fn the_headers_are_those_of_the_version_we_checked() {
     assert_eq!(catoptric::osd::version(), "3.5.0");
+}
+
+#[test]
+fn a_level_that_32_bits_do_not_hold_is_out_of_range_too() {
+    let refiner = Refiner::uniform(&mesh("cube"), 1).expect("it refines");
+    // Cut to 32 bits it would be level 0.
+    assert!(refusal(refiner.level(1 << 32)).contains("level out of range"));
+}
+
+#[test]
+fn far_tables_are_measured() {
+    let far = Far::new(&mesh("cube"), 3).expect("a table");
+    // Every corner of a cube is extraordinary: at isolation 3, each face has 4 end caps and 12 regular patches a level.
+    assert_eq!(far.patch_count(), 6 * (4 + 12 + 12));
+    // Indices and parameters alone: 16 points a regular patch, 20 an end cap.
+    let least = 6 * (24 * 16 + 4 * 20) * 4 + 6 * 28 * 8;
+    assert!(far.bytes() > least && far.bytes() < 10 * least, "{}", far.bytes());
+}
+
+#[test]
+fn answers_say_how_large_their_cell_is() {
+    let mut far = Far::new(&mesh("cube"), 10).expect("a table");
+    let answers = far.evaluate(&[(0, 0.4, 0.4), (0, 0.2, 0.2), (0, 0.0, 0.0)]).expect("it evaluates");
+    assert_eq!(answers.iter().map(|a| a.cell).collect::<Vec<_>>(), [0.25, 0.125, 2f64.powi(-10)]);
+    // The quadrants of an n-gon are ptex faces of their own.
+    let mut far = Far::new(&mesh("n_gons"), 10).expect("a table");
+    assert!(far.evaluate(&[(0, 0.75, 0.25)]).expect("it evaluates")[0].cell <= 1.0);
+}
+
+#[test]
+fn the_smallest_parameters_have_finite_answers() {
+    let cube = mesh("cube");
+    let least = f64::from_bits(1);
+    let samples = [(0, least, least), (0, least, 0.0), (0, 0.0, least), (0, f64::MIN_POSITIVE, least)];
+    let far = Far::new(&cube, 10).and_then(|mut far| far.evaluate(&samples)).expect("it evaluates");
+    let bfr = Bfr::new(&cube, (2, 6)).and_then(|mut bfr| bfr.evaluate(&samples)).expect("it evaluates");
+    for answer in far.iter().chain(&bfr) {
+        assert!(answer.position.is_finite() && answer.du.is_finite() && answer.dv.is_finite(), "{answer:?}");
+    }
+}
+
+#[test]
+fn levels_list_edges_and_restless_vertices() {
+    let level = Refiner::uniform(&mesh("semi_sharp_crease"), 1).and_then(|r| r.level(0)).expect("it refines");
+    let sharp = |edge: usize| level.edge_sharpness[edge] > 0.0 && level.edge_sharpness[edge] < 10.0;
+    let mut restless = vec![false; level.vertex_count()];
+    for face in 0..level.face_count() {
+        let edges: Vec<_> = level.edges_of_face(face).collect();
+        assert_eq!(edges.len(), level.corners(face).len());
+        for (i, [vertex, next, edge]) in edges.iter().copied().enumerate() {
+            assert_eq!(next, edges[(i + 1) % edges.len()][0]);
+            assert!(level.edge_faces[edge].contains(&(face as i32)));
+            restless[vertex] |= sharp(edge);
+            restless[next] |= sharp(edge);
+        }
+    }
+    assert!(restless.contains(&true));
+    assert_eq!(level.restless(), restless);
 }
 
 #[test]

@@ -73,6 +73,9 @@ pub(super) struct InfoArgs {
     /// Print JSON
     #[arg(long)]
     pub json: bool,
+    /// Also count OpenSubdiv's patches at isolation 10 and their bytes, which takes its time
+    #[arg(long)]
+    pub peers: bool,
 }
 
 /// Largest width and height of a picture, the texture limit of the software adapter.

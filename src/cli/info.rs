@@ -4,7 +4,7 @@ use super::args::InfoArgs;
 use super::{Failure, load, write_out};
 use crate::gpu;
 use crate::mesh::{Boundary, Creasing, SubdivMesh};
-use crate::osd::{INFINITE_SHARPNESS, Level, Refiner, Rule};
+use crate::osd::{Far, INFINITE_SHARPNESS, Level, MAX_ISOLATION, Refiner, Rule};
 use crate::patch::PatchKind;
 use crate::stam::LimitSurface;
 use serde::Serialize;
@@ -45,13 +45,23 @@ struct Info {
     /// Bytes of the class matrices in f64 and of the tables on the GPU.
     class_table_bytes: usize,
     gpu_table_bytes: u64,
+    /// OpenSubdiv's Far patches at isolation 10: number, and bytes in f64.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    opensubdiv_patches: Option<u64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    opensubdiv_bytes: Option<u64>,
 }
 
 pub(super) fn run(args: &InfoArgs) -> Result<(), Failure> {
     let mesh = load(args.mesh.as_deref())?;
     let surface = LimitSurface::new(&mesh).map_err(|e| Failure::of(&mesh, e))?;
     let control = Refiner::uniform(&mesh, 1).and_then(|r| r.level(0)).map_err(|e| Failure::of(&mesh, e))?;
-    let info = collect(&mesh, &surface, &control);
+    let mut info = collect(&mesh, &surface, &control);
+    if args.peers {
+        let far = Far::new(&mesh, MAX_ISOLATION).map_err(|e| Failure::of(&mesh, e))?;
+        info.opensubdiv_patches = Some(far.patch_count());
+        info.opensubdiv_bytes = Some(far.bytes());
+    }
     let text = if args.json {
         serde_json::to_string_pretty(&info).map_err(std::io::Error::from)? + "\n"
     } else {
@@ -121,12 +131,9 @@ fn vertices(control: &Level, info: &mut Info) {
     let mut faces = vec![0; control.vertex_count()];
     let mut boundary = vec![false; control.vertex_count()];
     for face in 0..control.face_count() {
-        let corners = control.corners(face);
-        for i in corners.clone() {
-            let next = if i + 1 == corners.end { corners.start } else { i + 1 };
-            let [vertex, next] = [i, next].map(|i| control.face_vertices[i] as usize);
+        for [vertex, next, edge] in control.edges_of_face(face) {
             faces[vertex] += 1;
-            if control.edge_faces[control.face_edges[i] as usize][1] < 0 {
+            if control.edge_faces[edge][1] < 0 {
                 boundary[vertex] = true;
                 boundary[next] = true;
             }
@@ -167,7 +174,7 @@ fn describe(info: &Info) -> String {
         "{} (boundary: {}, not manifold: {}, semi-sharp: {}, infinitely sharp: {})",
         info.edges, info.boundary_edges, info.non_manifold_edges, info.semi_sharp_edges, info.infinitely_sharp_edges
     );
-    let rows = [
+    let mut rows = vec![
         ("mesh", info.mesh.clone()),
         ("control vertices", format!("{} (isolated: {})", info.vertices, info.isolated_vertices)),
         ("control faces", format!("{} (holes: {}; ptex faces: {})", info.faces, info.holes, info.ptex_faces)),
@@ -185,6 +192,10 @@ fn describe(info: &Info) -> String {
         ("classes", format!("{} ({} of matrices)", info.classes, mebibytes(info.class_table_bytes as f64))),
         ("GPU tables", mebibytes(info.gpu_table_bytes as f64)),
     ];
+    if let (Some(patches), Some(bytes)) = (info.opensubdiv_patches, info.opensubdiv_bytes) {
+        let size = mebibytes(bytes as f64);
+        rows.push(("OpenSubdiv's patches", format!("{patches} (isolation {MAX_ISOLATION}: {size} in f64)")));
+    }
     let mut text = String::new();
     for (name, value) in rows {
         let _ = writeln!(text, "{name:<25} {value}"); // writing to a String cannot fail

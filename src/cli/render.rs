@@ -4,7 +4,7 @@ use super::args::{size, vector};
 use super::{Failure, load, progress};
 use crate::field::{DEFAULT_FOV, Light, Pattern, Picture, Scout};
 use crate::gpu::{Gpu, MAX_PROXY_LEVEL, MAX_SAMPLES, Pipeline, TableLayout, View, tables};
-use crate::output::{check_folder, write_png};
+use crate::output::{check_writable, write_png};
 use crate::stam::LimitSurface;
 use clap::{Args, ValueEnum};
 use glam::DVec3;
@@ -49,7 +49,7 @@ pub(super) struct RenderArgs {
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     up: Option<DVec3>,
     /// Vertical field of view in degrees
-    #[arg(long, value_name = "DEG", default_value_t = DEFAULT_FOV)]
+    #[arg(long, value_name = "DEG", default_value_t = DEFAULT_FOV, value_parser = fov)]
     fov: f64,
     /// A point of the light plane, where its coordinates are 0 [default: fit]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
@@ -90,6 +90,11 @@ fn positive(text: &str) -> Result<f64, String> {
     text.parse().ok().filter(|x: &f64| *x > 0.0 && x.is_finite()).ok_or("give a number above 0".to_owned())
 }
 
+fn fov(text: &str) -> Result<f64, String> {
+    let fov = text.parse().ok().filter(|x| *x > 0.0 && *x < 180.0);
+    fov.ok_or("give a field of view above 0 and below 180 degrees".to_owned())
+}
+
 fn part(text: &str) -> Result<f64, String> {
     text.parse().ok().filter(|x| (0.0..=1.0).contains(x)).ok_or("give a number from 0 to 1".to_owned())
 }
@@ -120,7 +125,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
             args.output.display()
         )));
     }
-    check_folder(&args.output)?;
+    check_writable(&args.output)?;
     let pattern = pattern(args)?;
     let bar = progress("drawing".to_owned());
     let mesh = clock.time("read", || load(args.mesh.as_deref()))?;
@@ -131,7 +136,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
             mesh.name
         ))
     })?;
-    let view = view(args, &scout, pattern);
+    let view = view(args, &scout, pattern)?;
     let gpu = clock.time("adapter", Gpu::new)?;
     let uploaded = clock.time("tables", || gpu.upload_as(&surface, args.layout))?;
     let frame = gpu.render(&uploaded, &view)?;
@@ -158,7 +163,7 @@ fn sample_rig() -> (DVec3, Light) {
     (DVec3::new(-1.90, 2.10, 0.81), Light::new(center, facing, lines, 1.0))
 }
 
-fn view(args: &RenderArgs, scout: &Scout, pattern: Pattern) -> View {
+fn view(args: &RenderArgs, scout: &Scout, pattern: Pattern) -> Result<View, Failure> {
     let up = args.up.unwrap_or(DVec3::Z);
     let sample = (args.mesh.is_none() && args.up.is_none()).then(sample_rig);
     let mut camera = match sample {
@@ -179,6 +184,7 @@ fn view(args: &RenderArgs, scout: &Scout, pattern: Pattern) -> View {
     if given.iter().any(Option::is_some) {
         let fitted = [light.center, light.normal(), light.axes[1]];
         let [center, normal, lines] = std::array::from_fn(|i| given[i].unwrap_or(fitted[i]));
+        check_light(args, normal, lines)?;
         light = Light::new(center, normal, lines, light.spacing);
     }
     light.spacing = args.light_spacing.unwrap_or(light.spacing);
@@ -194,7 +200,24 @@ fn view(args: &RenderArgs, scout: &Scout, pattern: Pattern) -> View {
         PipelineName::Polygon => Pipeline::Polygon,
     };
     match args.field {
-        FieldName::Reflection => view,
+        FieldName::Reflection => Ok(view),
+    }
+}
+
+/// Refuses directions that say nothing: `Light::new` would take any instead.
+fn check_light(args: &RenderArgs, normal: DVec3, lines: DVec3) -> Result<(), Failure> {
+    /// Sine of the smallest angle between lines and normal: below it, their part in the plane is mostly rounding.
+    const PARALLEL: f64 = 1e-9;
+    let bad = |what: &str| Err(Failure::Bad(what.to_owned()));
+    let Some(normal) = normal.try_normalize() else {
+        return bad("--light-normal has no direction; give one that is not 0,0,0");
+    };
+    match lines.try_normalize() {
+        None => bad("--light-lines has no direction; give one that is not 0,0,0"),
+        Some(lines) if args.light_lines.is_some() && lines.cross(normal).length() < PARALLEL => {
+            bad("--light-lines is parallel to the normal of the light plane; give a direction with a part in the plane")
+        }
+        Some(_) => Ok(()),
     }
 }
 

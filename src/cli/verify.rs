@@ -2,11 +2,14 @@
 
 use super::args::VerifyArgs;
 use super::{Failure, load, progress, write_out};
+
 use crate::gpu::Gpu;
+use crate::output::check_writable;
 use crate::verify::{Report, VerifyError, verify};
 use std::path::Path;
 
 pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
+    args.json.as_deref().map_or(Ok(()), check_writable)?;
     let paths: Vec<Option<&Path>> = match args.meshes[..] {
         [] => vec![None],
         _ => args.meshes.iter().map(|path| Some(path.as_path())).collect(),
@@ -32,7 +35,9 @@ pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
         write_out(Some(path), &text)?;
     }
     let verdict = if report.pass { "pass" } else { "FAIL" };
-    let summary = format!("{verdict}: {} meshes against OpenSubdiv {}\n", report.meshes.len(), report.opensubdiv);
+    let count = report.meshes.len();
+    let meshes = if count == 1 { "mesh" } else { "meshes" };
+    let summary = format!("{verdict}: {count} {meshes} against OpenSubdiv {}\n", report.opensubdiv);
     write_out(None, summary.as_bytes())?;
     if report.pass { Ok(()) } else { Err(Failure::Check) }
 }

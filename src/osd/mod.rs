@@ -32,7 +32,7 @@ pub enum Error {
     OpenSubdiv(String),
 }
 
-/// Version of the OpenSubdiv in use.
+/// Version of OpenSubdiv's headers, as built against; no other than 3.5.0 compiles.
 pub fn version() -> String {
     // SAFETY: osd_version returns a static C string.
     unsafe { CStr::from_ptr(raw::osd_version()) }.to_string_lossy().into_owned()
@@ -48,7 +48,12 @@ fn check(status: raw::osd_status) -> Result<(), Error> {
     Err(Error::OpenSubdiv(message.to_string_lossy().trim().replace('\n', " ")))
 }
 
-/// A validated mesh in the layout of `osd_mesh`.
+/// A count or index as the C interface takes it.
+fn int(n: usize, what: &str) -> Result<i32, Error> {
+    i32::try_from(n).map_err(|_| Error::OpenSubdiv(format!("{what} out of range: {n}")))
+}
+
+/// A validated mesh, whose counts and indices fit 32 bits, in the layout of `osd_mesh`.
 struct Descriptor {
     face_sizes: Vec<i32>,
     face_vertices: Vec<i32>,

@@ -1,6 +1,6 @@
 //! The regression references: OpenSubdiv's own evaluators of the limit surface.
 
-use super::{Descriptor, Error, check, raw};
+use super::{Descriptor, Error, check, int, raw};
 use crate::mesh::SubdivMesh;
 use glam::DVec3;
 use std::ptr::NonNull;
@@ -30,6 +30,9 @@ pub struct ReferenceJet {
     pub du: DVec3,
     /// Derivative by v.
     pub dv: DVec3,
+    /// Side of the patch that answered, in parameters of the ptex face: OpenSubdiv differentiates in units of it, so
+    /// rounding of its points shows 1/cell times as large in the derivatives.
+    pub cell: f64,
 }
 
 /// An evaluator that we did not write.
@@ -46,36 +49,41 @@ struct Batch {
     faces: Vec<i32>,
     uv: Vec<f64>,
     jets: Vec<[DVec3; 3]>,
+    cells: Vec<f64>,
     answers: Vec<u8>,
 }
 
 impl Batch {
     fn new(samples: &[(u32, f64, f64)]) -> Self {
         Self {
-            faces: samples.iter().map(|s| s.0 as i32).collect(),
+            // A face that 32 bits do not hold does not exist: nor does the largest that they do.
+            faces: samples.iter().map(|s| i32::try_from(s.0).unwrap_or(i32::MAX)).collect(),
             uv: samples.iter().flat_map(|s| [s.1, s.2]).collect(),
             jets: vec![[DVec3::ZERO; 3]; samples.len()],
+            cells: vec![1.0; samples.len()],
             answers: vec![0; samples.len()],
         }
     }
 
     fn run(
         mut self,
-        call: impl FnOnce(i32, *const i32, *const f64, *mut f64, *mut u8) -> raw::osd_status,
+        call: impl FnOnce(i32, *const i32, *const f64, *mut f64, *mut f64, *mut u8) -> raw::osd_status,
     ) -> Result<Vec<ReferenceJet>, Error> {
         let jets: &mut [f64] = bytemuck::cast_slice_mut(&mut self.jets);
         check(call(
-            self.faces.len() as i32,
+            int(self.faces.len(), "number of samples")?,
             self.faces.as_ptr(),
             self.uv.as_ptr(),
             jets.as_mut_ptr(),
+            self.cells.as_mut_ptr(),
             self.answers.as_mut_ptr(),
         ))?;
         Ok(self
             .jets
             .iter()
+            .zip(&self.cells)
             .zip(&self.answers)
-            .map(|(&[position, du, dv], &answer)| ReferenceJet {
+            .map(|((&[position, du, dv], &cell), &answer)| ReferenceJet {
                 answer: match raw::osd_answer::from(answer) {
                     raw::OSD_ANSWER_REGULAR => Answer::Regular,
                     raw::OSD_ANSWER_END_CAP => Answer::EndCap,
@@ -85,6 +93,7 @@ impl Batch {
                 position,
                 du,
                 dv,
+                cell,
             })
             .collect())
     }
@@ -133,13 +142,31 @@ impl Far {
         })?;
         Ok(Self(NonNull::new(handle).expect("a table comes with status OK")))
     }
+
+    fn sizes(&self) -> raw::osd_far_sizes {
+        let mut sizes = raw::osd_far_sizes::default();
+        // SAFETY: the handle is live and the output is a local.
+        check(unsafe { raw::osd_far_measure(self.0.as_ptr(), &mut sizes) }).expect("a table can be measured");
+        sizes
+    }
+
+    /// Number of patches, end caps included.
+    pub fn patch_count(&self) -> u64 {
+        self.sizes().patches as u64
+    }
+
+    /// Bytes of the table: control vertex indices (4 a point of a patch), patch parameters (8 a patch) and its points,
+    /// refined ones and those of end caps, in f64 (24 each). Without the stencils that make the points.
+    pub fn bytes(&self) -> u64 {
+        self.sizes().bytes as u64
+    }
 }
 
 impl Reference for Far {
     fn evaluate(&mut self, samples: &[(u32, f64, f64)]) -> Result<Vec<ReferenceJet>, Error> {
         // SAFETY: the handle is live and borrowed mutably; the arrays are sized by `count`.
-        Batch::new(samples).run(|count, faces, uv, jets, answers| unsafe {
-            raw::osd_far_evaluate(self.0.as_ptr(), count, faces, uv, jets, answers)
+        Batch::new(samples).run(|count, faces, uv, jets, cells, answers| unsafe {
+            raw::osd_far_evaluate(self.0.as_ptr(), count, faces, uv, jets, cells, answers)
         })
     }
 }
@@ -188,8 +215,8 @@ impl Bfr {
 impl Reference for Bfr {
     fn evaluate(&mut self, samples: &[(u32, f64, f64)]) -> Result<Vec<ReferenceJet>, Error> {
         // SAFETY: the handle is live and borrowed mutably; the arrays are sized by `count`.
-        Batch::new(samples).run(|count, faces, uv, jets, answers| unsafe {
-            raw::osd_bfr_evaluate(self.0.as_ptr(), count, faces, uv, jets, answers)
+        Batch::new(samples).run(|count, faces, uv, jets, cells, answers| unsafe {
+            raw::osd_bfr_evaluate(self.0.as_ptr(), count, faces, uv, jets, cells, answers)
         })
     }
 }

@@ -1,6 +1,6 @@
 //! Topology refinement.
 
-use super::{Descriptor, Error, MAX_ISOLATION, check, raw};
+use super::{Descriptor, Error, INFINITE_SHARPNESS, MAX_ISOLATION, check, int, raw};
 use crate::mesh::SubdivMesh;
 use glam::DVec3;
 use std::ptr::NonNull;
@@ -68,6 +68,28 @@ impl Level {
     /// Corners of a face: a range of the per-corner arrays.
     pub fn corners(&self, face: usize) -> std::ops::Range<usize> {
         self.face_offsets[face] as usize..self.face_offsets[face + 1] as usize
+    }
+
+    /// The edges of a face in order: the vertex where each begins, the next vertex, and the edge itself.
+    pub fn edges_of_face(&self, face: usize) -> impl Iterator<Item = [usize; 3]> + use<'_> {
+        let corners = self.corners(face);
+        corners.clone().map(move |i| {
+            let next = if i + 1 == corners.end { corners.start } else { i + 1 };
+            [self.face_vertices[i], self.face_vertices[next], self.face_edges[i]].map(|index| index as usize)
+        })
+    }
+
+    /// For each vertex, whether its rules still change: finite sharpness on it or on an edge of it.
+    pub fn restless(&self) -> Vec<bool> {
+        let finite = |sharpness: f32| sharpness > 0.0 && sharpness < INFINITE_SHARPNESS;
+        let mut restless: Vec<bool> = self.vertex_sharpness.iter().map(|&s| finite(s)).collect();
+        for [vertex, next, edge] in (0..self.face_count()).flat_map(|face| self.edges_of_face(face)) {
+            if finite(self.edge_sharpness[edge]) {
+                restless[vertex] = true;
+                restless[next] = true;
+            }
+        }
+        restless
     }
 }
 
@@ -172,7 +194,8 @@ impl Refiner {
     /// # Errors
     /// `level` is not below [`level_count`](Self::level_count).
     pub fn level(&self, level: usize) -> Result<Level, Error> {
-        let sizes = self.sizes(level as i32)?;
+        let index = int(level, "level")?;
+        let sizes = self.sizes(index)?;
         let [vertices, edges, faces, corners] =
             [sizes.vertices, sizes.edges, sizes.faces, sizes.face_vertices].map(|n| n as usize);
         let mut out = Level {
@@ -201,7 +224,7 @@ impl Refiner {
             vertex_children: out.vertex_children.as_mut_ptr(),
         };
         // SAFETY: every array has the size that ffi/osd.h states for it.
-        check(unsafe { raw::osd_refiner_level(self.handle.as_ptr(), level as i32, &arrays) })?;
+        check(unsafe { raw::osd_refiner_level(self.handle.as_ptr(), index, &arrays) })?;
         out.vertex_rules = rules.into_iter().map(Rule::from_raw).collect();
         Ok(out)
     }

@@ -4,4 +4,4 @@ mod png;
 mod whole;
 
 pub use png::write_png;
-pub use whole::{OutputError, check_folder, write_whole};
+pub use whole::{OutputError, check_writable, write_whole};

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 /// Why a file was not written. Whatever stood at the path before still stands there.
 #[derive(Debug, thiserror::Error)]
-#[error("{}: cannot write: {source}; choose a writable path with -o", path.display())]
+#[error("{}: cannot write: {source}; choose a writable path", path.display())]
 pub struct OutputError {
     /// Destination.
     pub path: PathBuf,
@@ -17,17 +17,31 @@ fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// Tells early, before the work, that a file could not be written because its folder does not exist.
+/// Creates the file that is renamed over `path` later; it removes itself until then.
+fn beside(path: &Path) -> std::io::Result<tempfile::NamedTempFile> {
+    if path.is_dir() {
+        return Err(std::io::Error::other("it is a folder"));
+    }
+    let folder = folder_of(path);
+    if !folder.is_dir() {
+        return Err(std::io::Error::other(format!("the folder {} does not exist", folder.display())));
+    }
+    let mut file = tempfile::Builder::new();
+    file.prefix(".catoptric-").suffix(".part");
+    // The usual rights of a new file: a temporary one is private otherwise.
+    #[cfg(unix)]
+    file.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    // The error itself would name the temporary file, which tells the user nothing.
+    file.tempfile_in(folder).map_err(|error| error.kind().into())
+}
+
+/// Tells early, before the work, that a file could not be written: its folder is missing or not writable, or the path
+/// is a folder.
 ///
 /// # Errors
-/// The folder of `path` is missing.
-pub fn check_folder(path: &Path) -> Result<(), OutputError> {
-    let folder = folder_of(path);
-    if folder.is_dir() {
-        return Ok(());
-    }
-    let source = std::io::Error::other(format!("the folder {} does not exist", folder.display()));
-    Err(OutputError { path: path.to_owned(), source })
+/// As above. Nothing is left behind.
+pub fn check_writable(path: &Path) -> Result<(), OutputError> {
+    beside(path).map(drop).map_err(|source| OutputError { path: path.to_owned(), source })
 }
 
 /// Writes a file through `content`, whole or not at all.
@@ -39,16 +53,7 @@ pub fn write_whole(
     content: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
 ) -> Result<(), OutputError> {
     let write = || -> std::io::Result<()> {
-        if path.is_dir() {
-            return Err(std::io::Error::other("it is a folder"));
-        }
-        let mut file = tempfile::Builder::new();
-        file.prefix(".catoptric-").suffix(".part");
-        // The usual rights of a new file: a temporary one is private otherwise.
-        #[cfg(unix)]
-        file.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        let file = file.tempfile_in(folder_of(path))?;
-        let mut writer = BufWriter::new(file);
+        let mut writer = BufWriter::new(beside(path)?);
         content(&mut writer)?;
         let file = writer.into_inner().map_err(std::io::IntoInnerError::into_error)?;
         file.as_file().sync_all()?;

@@ -32,8 +32,9 @@ pub struct Neighbour {
 }
 
 impl Neighbour {
-    /// Parameters of a point in the other patch's frame, given in the own frame of edge `edge`: the affine map that is
-    /// exact on the edge and, between faces of the same kind, matches the first derivatives across it.
+    /// Parameters of a point in the other patch's frame, given in the own frame of edge `edge`: the affine map
+    /// that continues the parameters across it. It is exact on the edge; beyond it, away from extraordinary vertices and
+    /// sharp edges, both patches agree to second order.
     pub fn carry(&self, edge: u8, [u, v]: [f64; 2]) -> [f64; 2] {
         let (t, beyond) = match edge {
             0 => (u, -v),

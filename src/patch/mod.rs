@@ -19,7 +19,7 @@ use crate::mesh::SubdivMesh;
 use crate::osd::{INFINITE_SHARPNESS, MAX_ISOLATION, Refiner};
 
 /// Most faces round an extraordinary vertex.
-pub const MAX_VALENCE: usize = 4096;
+pub const MAX_VALENCE: usize = 1024;
 
 /// Why the patches of a mesh were not found.
 #[derive(Debug, thiserror::Error)]
@@ -35,8 +35,8 @@ pub enum PatchError {
         /// Face index in the level.
         face: usize,
     },
-    /// A class table grows with the valence (20 kB a face).
-    #[error("a vertex where {0} faces meet; at most {MAX_VALENCE} are supported: split the vertex")]
+    /// The classes of one vertex take memory with the square of its valence (300 MB at the limit).
+    #[error("a face of {0} corners or a vertex of valence {0}; at most {MAX_VALENCE} are supported: split it")]
     Valence(usize),
     /// OpenSubdiv numbered child faces in an order we do not know.
     #[error("face {face} of level {level}: unexpected order of its child faces: please report this mesh")]

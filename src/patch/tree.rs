@@ -55,7 +55,7 @@ pub(super) fn build(refiner: &Refiner) -> Result<Patches, PatchError> {
         refiner.vertex_counts().iter().scan(0, |sum, &count| Some(std::mem::replace(sum, *sum + count))).collect();
     let mut walk = Walk {
         first_vertex,
-        restless: levels.iter().map(restless_vertices).collect(),
+        restless: levels.iter().map(Level::restless).collect(),
         states: levels.iter().map(|level| vec![State::Unvisited; level.face_count()]).collect(),
         places: Vec::new(),
         class_indices: HashMap::new(),
@@ -68,22 +68,6 @@ pub(super) fn build(refiner: &Refiner) -> Result<Patches, PatchError> {
     walk.mark_transitions();
     walk.out.ptex_edges = PtexEdges::new(&walk.levels[0]);
     Ok(walk.out)
-}
-
-fn restless_vertices(level: &Level) -> Vec<bool> {
-    let finite = |sharpness: f32| sharpness > 0.0 && sharpness < INFINITE_SHARPNESS;
-    let mut restless: Vec<bool> = level.vertex_sharpness.iter().map(|&s| finite(s)).collect();
-    for face in 0..level.face_count() {
-        let corners = level.corners(face);
-        for i in corners.clone() {
-            if finite(level.edge_sharpness[level.face_edges[i] as usize]) {
-                let next = if i + 1 == corners.end { corners.start } else { i + 1 };
-                restless[level.face_vertices[i] as usize] = true;
-                restless[level.face_vertices[next] as usize] = true;
-            }
-        }
-    }
-    restless
 }
 
 impl Walk {

@@ -14,15 +14,22 @@
 //! # Practice
 //! [`ClassTable::new`] builds the matrices of one class; patches of the class share them.
 
+use super::Window;
+use super::modes::Modes;
 use super::rows::{Row, Rows};
-use crate::patch::{RingClass, Tip};
-use std::f64::consts::{PI, TAU};
+use super::surface::combine;
+use crate::patch::RingClass;
+use glam::DVec3;
 
 /// Levels kept in f64: the smallest u or v above zero that doubles near 1 resolve.
 pub const LEVELS: usize = 52;
 
 /// Points of the three windows of a level: a 5x5 grid without its corner at (-1,-1).
 pub const WINDOW_POINTS: usize = 24;
+
+/// Faces up to which a class keeps its matrices: their memory is 20 kB a face, and a sector of k faces has k classes.
+/// Beyond, levels are computed by stepping.
+const KEPT_FACES: u16 = 16;
 
 /// Matrices shared by all patches of a class.
 #[derive(Debug)]
@@ -31,11 +38,15 @@ pub struct ClassTable {
     pub lambda: f64,
     /// l0: weights of the control points in the limit position of the extraordinary vertex.
     pub limit: Vec<f64>,
-    /// Weights of the control points in two tangents of the limit surface at a smooth extraordinary vertex, their cross
-    /// product along the normal: the table itself converges to them like (next eigenvalue / lambda)^n, which for high
-    /// valence is slow (0.82^n for N = 8).
+    /// Weights of the control points in two directions that span the tangent plane at the extraordinary vertex; `None`
+    /// for corners, which have none. The levels converge to it like (next eigenvalue / lambda)^n, which is slow for high
+    /// valence (0.82^n for N = 8), and like 1/n where the matrix is defective.
     pub tangents: Option<[Vec<f64>; 2]>,
-    /// Mhat(n) at `levels[n-1]`, [`WINDOW_POINTS`] rows of K weights: Phat(n) = Mhat(n) C.
+    /// A.
+    step: Vec<Row>,
+    /// A': the window points of the next level.
+    windows: Vec<Row>,
+    /// Mhat(n) at `levels[n-1]`, [`WINDOW_POINTS`] rows of K weights: Phat(n) = Mhat(n) C. Empty for large classes.
     levels: Vec<Vec<f64>>,
 }
 
@@ -44,48 +55,93 @@ impl ClassTable {
     pub fn new(class: RingClass) -> Self {
         let rows = Rows::new(class);
         let step = rows.step();
-        let size = step.len();
         let limit = left_eigenvector_of_one(&step);
-        let lambda = subdominant_eigenvalue(class, &step, &limit);
+        let Modes { lambda, tangents } = Modes::of(class);
+        let windows: Vec<Row> = (1..=WINDOW_POINTS as isize).map(|k| rows.refined(k % 5 - 1, k / 5 - 1)).collect();
+        let mut table = Self { lambda, limit, tangents, step, windows, levels: Vec::new() };
+        if class.faces <= KEPT_FACES {
+            table.levels = table.matrices();
+        }
+        table
+    }
 
-        let windows = (1..=WINDOW_POINTS as isize).map(|k| rows.refined(k % 5 - 1, k / 5 - 1));
-        let mut level: Vec<f64> = windows
-            .flat_map(|row| {
-                let mut dense: Vec<f64> = limit.iter().map(|&w| -w).collect();
-                row.iter().for_each(|&(k, w)| dense[k] += w);
-                dense
-            })
-            .collect();
+    /// Mhat(1) = A' (1 - 1 l0), Mhat(n+1) = Mhat(n) B / lambda.
+    fn matrices(&self) -> Vec<Vec<f64>> {
+        let start = |row: &Row| {
+            let mut dense: Vec<f64> = self.limit.iter().map(|&w| -w).collect();
+            row.iter().for_each(|&(k, w)| dense[k] += w);
+            dense
+        };
+        let mut level: Vec<f64> = self.windows.iter().flat_map(start).collect();
         let mut levels = Vec::with_capacity(LEVELS);
         while levels.len() < LEVELS {
-            let next = level.chunks_exact(size).flat_map(|row| deflated_step(row, &step, &limit, lambda)).collect();
+            let rows = level.chunks_exact(self.limit.len());
+            let next = rows.flat_map(|row| deflated_step(row, &self.step, &self.limit, self.lambda)).collect();
             levels.push(std::mem::replace(&mut level, next));
         }
-        let smooth = class.closed && class.tip == Tip::Smooth && class.sharp_spoke.is_none();
-        let tangents = smooth.then(|| smooth_tangents(usize::from(class.faces), size));
-        Self { lambda, limit, tangents, levels }
+        levels
     }
 
-    /// Number of levels.
-    pub fn level_count(&self) -> usize {
-        self.levels.len()
+    /// Number of control points, K.
+    pub fn support(&self) -> usize {
+        self.limit.len()
     }
 
-    /// Weights of the K control points in window point `point` (0 to [`WINDOW_POINTS`]) of level `level`, 1 to
-    /// [`LEVELS`].
-    pub fn weights(&self, level: usize, point: usize) -> &[f64] {
+    /// Weights of the K control points in window point `point` (0 to [`WINDOW_POINTS`]) of level `level`, 1 to [`LEVELS`];
+    /// `None` for classes too large to keep their matrices.
+    pub fn weights(&self, level: usize, point: usize) -> Option<&[f64]> {
         let size = self.limit.len();
-        &self.levels[level - 1][point * size..(point + 1) * size]
+        Some(&self.levels.get(level - 1)?[point * size..(point + 1) * size])
+    }
+
+    /// Phat(n) for n = `level`, 1 to [`LEVELS`], from control points relative to the limit position s0.
+    pub fn level_points(&self, level: usize, points: &[DVec3]) -> [DVec3; WINDOW_POINTS] {
+        if self.levels.is_empty() {
+            let stepped = self.stepped(level, points);
+            return std::array::from_fn(|point| sparse(&self.windows[point], &stepped));
+        }
+        let size = self.limit.len();
+        let rows = &self.levels[level - 1];
+        std::array::from_fn(|point| combine(&rows[point * size..(point + 1) * size], points))
+    }
+
+    /// The 16 points of one window of a level.
+    pub(super) fn window_points(&self, level: usize, window: &Window, points: &[DVec3]) -> [DVec3; 16] {
+        if self.levels.is_empty() {
+            let stepped = self.stepped(level, points);
+            return std::array::from_fn(|k| sparse(&self.windows[window.point(k)], &stepped));
+        }
+        let size = self.limit.len();
+        let rows = &self.levels[level - 1];
+        std::array::from_fn(|k| {
+            let point = window.point(k);
+            combine(&rows[point * size..(point + 1) * size], points)
+        })
+    }
+
+    /// (B / lambda)^(level - 1) C.
+    fn stepped(&self, level: usize, points: &[DVec3]) -> Vec<DVec3> {
+        let mut stepped = points.to_vec();
+        for _ in 1..level {
+            let constant: DVec3 = combine(&self.limit, &stepped);
+            stepped = self.step.iter().map(|row| (sparse(row, &stepped) - constant) / self.lambda).collect();
+        }
+        stepped
     }
 
     /// Memory that the matrices take.
     pub fn bytes(&self) -> usize {
-        self.levels.iter().map(|level| size_of_val(level.as_slice())).sum()
+        let rows = self.step.iter().chain(&self.windows).map(|row| size_of_val(row.as_slice()));
+        self.levels.iter().map(|level| size_of_val(level.as_slice())).chain(rows).sum()
     }
 }
 
+fn sparse(row: &Row, points: &[DVec3]) -> DVec3 {
+    row.iter().map(|&(k, w)| w * points[k]).sum()
+}
+
 /// A row vector times B / lambda, B = A - 1 l0.
-fn deflated_step(row: &[f64], step: &[Row], limit: &[f64], lambda: f64) -> Vec<f64> {
+pub(super) fn deflated_step(row: &[f64], step: &[Row], limit: &[f64], lambda: f64) -> Vec<f64> {
     let constant: f64 = row.iter().sum();
     let mut out: Vec<f64> = limit.iter().map(|&w| -constant * w).collect();
     for (&x, entries) in row.iter().zip(step) {
@@ -111,76 +167,13 @@ fn left_eigenvector_of_one(step: &[Row]) -> Vec<f64> {
     limit
 }
 
-/// Largest eigenvalue below 1.
-///
-/// Where the ring decouples into Fourier modes it is known: mode angle 2 pi / N for a smooth vertex (Stam 1998, appendix
-/// A), pi / k between the two fixed edges of a sector, 0 round a fixed vertex; along a sharp edge it is 1/2. Only a dart,
-/// whose sharp edge mixes the modes, is iterated: its matrix has an eigenbasis.
-fn subdominant_eigenvalue(class: RingClass, step: &[Row], limit: &[f64]) -> f64 {
-    let mode = |angle: f64| {
-        let c = angle.cos();
-        (5.0 + c + ((9.0 + c) * (1.0 + c)).sqrt()) / 16.0
-    };
-    let faces = f64::from(class.faces);
-    match (class.closed, class.tip, class.sharp_spoke) {
-        (true, Tip::Smooth, None) => mode(TAU / faces),
-        (true, Tip::Smooth, Some(_)) => iterated_eigenvalue(step, limit),
-        (true, _, _) => mode(0.0),
-        (false, _, _) => mode(PI / faces).max(0.5),
-    }
-}
-
-/// Left eigenvectors of lambda at a smooth vertex of valence N: Halstead, Kass & DeRose 1993, appendix A. The two are the
-/// cosine and the sine mode, so the second leads the first by a quarter of the way round.
-fn smooth_tangents(valence: usize, size: usize) -> [Vec<f64>; 2] {
-    let angle = TAU / valence as f64;
-    let spoke = 1.0 + angle.cos() + (angle / 2.0).cos() * (2.0 * (9.0 + angle.cos())).sqrt();
-    [0.0, 0.25 * TAU].map(|phase| {
-        let wave = |i: usize| (i as f64 * angle - phase).cos();
-        let mut weights = vec![0.0; size];
-        for i in 0..valence {
-            weights[1 + i] = spoke * wave(i);
-            weights[1 + valence + i] = wave(i) + wave(i + 1);
-        }
-        weights
-    })
-}
-
-/// Largest eigenvalue of B in absolute value, by power iteration on its transpose.
-fn iterated_eigenvalue(step: &[Row], limit: &[f64]) -> f64 {
-    // No symmetry, so that no mode is missed.
-    let mut vector: Vec<f64> = (0..step.len()).map(|k| (0.7 * k as f64).sin()).collect();
-    let mut eigenvalue = 0.0;
-    for _ in 0..2000 {
-        let next = deflated_step(&vector, step, limit, 1.0);
-        let [length, before] = [&next, &vector].map(|x| x.iter().map(|x| x * x).sum::<f64>().sqrt());
-        eigenvalue = length / before;
-        vector = next.into_iter().map(|x| x / length).collect();
-    }
-    eigenvalue
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::patch::Tip;
 
     fn class(faces: u16, closed: bool, tip: Tip, sharp_spoke: Option<u16>) -> RingClass {
         RingClass { faces, closed, index: 0, tip, sharp_spoke }
-    }
-
-    #[test]
-    fn closed_forms_are_the_iterated_eigenvalues() {
-        let smooth = (2..=20).map(|n| class(n, true, Tip::Smooth, None));
-        let cones = (3..=8).map(|n| class(n, true, Tip::Corner, None));
-        // Sectors of 1, 2 and 4 faces have equal or defective eigenvalues at 1/2 or below the largest: iteration is slow
-        // there, not the formula wrong; the others converge.
-        let sectors =
-            [3, 5, 6, 7].into_iter().flat_map(|k| [Tip::Crease, Tip::Corner].map(|tip| class(k, false, tip, None)));
-        for class in smooth.chain(cones).chain(sectors) {
-            let table = ClassTable::new(class);
-            let iterated = iterated_eigenvalue(&Rows::new(class).step(), &table.limit);
-            assert!((iterated - table.lambda).abs() < 1e-12, "{class:?}: {iterated} against {}", table.lambda);
-        }
     }
 
     #[test]
@@ -202,16 +195,65 @@ mod tests {
         }
     }
 
+    /// Some control points, relative to the limit position.
+    fn points(table: &ClassTable) -> Vec<DVec3> {
+        let point = |k: usize| DVec3::new((k as f64).sin(), (2.3 * k as f64).cos(), (0.7 * k as f64).sin() * 0.4);
+        let points: Vec<DVec3> = (0..table.support()).map(point).collect();
+        let limit = combine(&table.limit, &points);
+        points.iter().map(|p| *p - limit).collect()
+    }
+
+    /// Far beyond the levels that are used, normals are those of the tangents, whatever the face and the window.
     #[test]
-    fn tangents_are_left_eigenvectors() {
-        for n in 3..=12 {
-            let class = class(n, true, Tip::Smooth, None);
-            let table = ClassTable::new(class);
-            let step = Rows::new(class).step();
-            for tangent in table.tangents.as_ref().expect("a smooth vertex has tangents") {
-                let next = deflated_step(tangent, &step, &table.limit, table.lambda);
-                let change = next.iter().zip(tangent).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-                assert!(change < 1e-14, "N = {n}: {change}");
+    fn normals_tend_to_the_tangent_plane() {
+        let smooth = (3..=20).map(|n| class(n, true, Tip::Smooth, None));
+        let creases = (1..=20).filter(|k| *k != 2).map(|k| class(k, false, Tip::Crease, None));
+        let darts = (3..=20).map(|n| class(n, true, Tip::Smooth, Some(n / 3)));
+        for class in smooth.chain(creases).chain(darts) {
+            let mut table = ClassTable::new(class);
+            table.levels.clear();
+            let points = points(&table);
+            let [first, second] =
+                table.tangents.as_ref().expect("a tangent plane").each_ref().map(|w| combine(w, &points));
+            let tip = first.cross(second).normalize();
+            // Far levels lose the second direction by the ratio of the two eigenvalues: stop where 1e-8 of it is left.
+            let eigenvalue = |w: &Vec<f64>| {
+                let length = |w: &[f64]| w.iter().map(|x| x * x).sum::<f64>().sqrt();
+                length(&deflated_step(w, &table.step, &table.limit, 1.0)) / length(w)
+            };
+            let [a, b] = table.tangents.as_ref().expect("a tangent plane").each_ref().map(eigenvalue);
+            let level = (1e-8f64.ln() / (a.min(b) / a.max(b)).ln().min(-6e-3)).ceil() as usize;
+            // Where the across direction is defective the angle shrinks like 1/n.
+            let (level, allowed) = match (class.tip, class.faces) {
+                (Tip::Crease, 1) => (45, 5.0),
+                (Tip::Crease, 4) => (level, 2.0),
+                _ => (level, 1e-2),
+            };
+            let grid = table.level_points(level, &points);
+            let at = |a: usize, b: usize| grid[5 * (b + 1) + a];
+            let normal = (at(2, 1) - at(1, 1)).cross(at(1, 2) - at(1, 1)).normalize();
+            let angle = normal.cross(tip).length().atan2(normal.dot(tip)).to_degrees();
+            assert!(angle < allowed, "{class:?}: {angle} degrees at level {level}");
+        }
+    }
+
+    /// Classes that keep no matrices step their points: the same levels.
+    #[test]
+    fn stepping_is_the_matrices() {
+        for class in [
+            class(5, true, Tip::Smooth, None),
+            class(4, false, Tip::Crease, None),
+            class(3, true, Tip::Smooth, Some(1)),
+        ] {
+            let kept = ClassTable::new(class);
+            let mut stepping = ClassTable::new(class);
+            stepping.levels.clear();
+            let points = points(&kept);
+            for level in [1, 2, 7, 30, LEVELS] {
+                let [a, b] = [&kept, &stepping].map(|table| table.level_points(level, &points));
+                for (a, b) in a.iter().zip(&b) {
+                    assert!(a.distance(*b) < 1e-12, "{class:?} level {level}: {a} {b}");
+                }
             }
         }
     }

@@ -5,10 +5,14 @@
 
 mod bspline;
 mod class;
+mod curvature;
+mod evaluate;
+mod modes;
 mod rows;
 mod surface;
 
 pub use class::{ClassTable, LEVELS, WINDOW_POINTS};
+pub use curvature::Curvature;
 pub use surface::{LimitSurface, Net};
 
 use glam::DVec3;
@@ -26,6 +30,19 @@ pub struct Jet {
     pub normal: DVec3,
 }
 
+/// A [`Jet`] with second derivatives.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Jet2 {
+    /// Position, first derivatives and normal.
+    pub first: Jet,
+    /// Second derivative by u.
+    pub duu: DVec3,
+    /// Mixed derivative.
+    pub duv: DVec3,
+    /// Second derivative by v.
+    pub dvv: DVec3,
+}
+
 /// Where in a Stam table a patch-local point lies (Yasui & Kanai 2004, section 4.1 and eq. 2).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Window {
@@ -35,25 +52,24 @@ pub struct Window {
     pub first: usize,
     /// Parameters inside the window.
     pub t: [f64; 2],
+    /// Both parameters are 0, or so small that no level is left.
+    pub at_vertex: bool,
 }
 
 impl Window {
-    /// The window at patch-local (u,v), each 0 to 1. At (0,0) it is the inner corner of level `LEVELS`, where the
-    /// table has converged to the tangent plane.
+    /// The window at patch-local (u,v), each 0 to 1. At (0,0), and below 2^-1000 where 2^n would overflow, it is the inner
+    /// corner of level [`LEVELS`].
     pub fn at([u, v]: [f64; 2]) -> Self {
         let largest = u.max(v);
-        let (level, a, b) = match largest {
-            0.0 => (LEVELS as u32, 1.0, 1.0),
-            // At 1 the window of level 1 ends; below, the exponent of the larger parameter is 1 - n - 1.
-            _ => {
-                let exponent = (largest.to_bits() >> 52) as i32 - 1023;
-                let level = (-exponent).clamp(1, 1000);
-                let scale = 2f64.powi(level);
-                (level as u32, u * scale, v * scale)
-            }
-        };
+        if largest < 2f64.powi(-1000) {
+            return Self { level: LEVELS as u32, first: 6, t: [0.0; 2], at_vertex: true };
+        }
+        // The exponent of the larger parameter is -n; at 1 the window of level 1 ends.
+        let exponent = (largest.to_bits() >> 52) as i32 - 1023;
+        let level = (-exponent).max(1);
+        let [a, b] = [u, v].map(|x| x * 2f64.powi(level));
         let [i, j] = [a, b].map(|x| usize::from(x >= 1.0));
-        Self { level, first: 5 * j + i, t: [a - i as f64, b - j as f64] }
+        Self { level: level as u32, first: 5 * j + i, t: [a - i as f64, b - j as f64], at_vertex: false }
     }
 
     /// Index in the table of point k (u fastest) of the window's 4x4 net. The table leaves out (-1,-1), so it starts

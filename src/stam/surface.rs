@@ -1,7 +1,6 @@
 //! The limit surface of a mesh: patches, points, tables, evaluation.
 
 use super::class::{ClassTable, WINDOW_POINTS};
-use super::{Jet, Window, weights};
 use crate::mesh::SubdivMesh;
 use crate::patch::{Adjacency, PHANTOM, Patch, PatchError, PatchKind, Patches, RingClass, slot};
 use glam::DVec3;
@@ -106,7 +105,7 @@ impl LimitSurface {
     }
 
     /// The 16 points of a regular patch, phantom points filled in.
-    fn regular_net(&self, patch: usize) -> [DVec3; 16] {
+    pub(super) fn regular_net(&self, patch: usize) -> [DVec3; 16] {
         let support = self.patches.support(patch);
         let mut net = [DVec3::ZERO; 16];
         for (point, &vertex) in net.iter_mut().zip(support) {
@@ -135,7 +134,7 @@ impl LimitSurface {
     }
 
     /// Control points of an irregular patch relative to s0, and s0.
-    fn irregular_net(&self, patch: usize, table: &ClassTable) -> (Vec<DVec3>, DVec3) {
+    pub(super) fn irregular_net(&self, patch: usize, table: &ClassTable) -> (Vec<DVec3>, DVec3) {
         let points: Vec<DVec3> =
             self.patches.support(patch).iter().map(|&vertex| self.points[vertex as usize]).collect();
         // Relative to the vertex first: world coordinates would cost digits.
@@ -152,78 +151,12 @@ impl LimitSurface {
         };
         let table = &self.tables[class];
         let (points, limit) = self.irregular_net(patch, table);
-        let levels = (1..=levels)
-            .map(|level| std::array::from_fn(|point| combine(table.weights(level, point), &points)))
-            .collect();
+        let levels = (1..=levels).map(|level| table.level_points(level, &points)).collect();
         Net::Irregular { limit, lambda: table.lambda, levels }
     }
-
-    /// Evaluates a patch at its local (u,v), each 0 to 1; derivatives by the local parameters.
-    ///
-    /// At the extraordinary vertex itself the derivatives are those of the innermost level: their limits are zero or
-    /// infinite unless lambda is 1/2.
-    pub fn evaluate(&self, patch: usize, uv: [f64; 2]) -> Jet {
-        let Some(class) = self.class(patch) else {
-            let net = self.regular_net(patch);
-            let [position, du, dv] = sum(&weights(uv), |k| net[k]);
-            return Jet { position, du, dv, normal: normal(du, dv) };
-        };
-        let table = &self.tables[class];
-        let (points, limit) = self.irregular_net(patch, table);
-        let window = Window::at(uv);
-        let level = (window.level as usize).min(table.level_count());
-        let point = |k| combine(table.weights(level, window.point(k)), &points);
-        let [offset, du, dv] = sum(&weights(window.t), point);
-        let scale = table.lambda.powi(window.level as i32 - 1);
-        let stretch = 2f64.powi(window.level as i32) * scale;
-        let (position, normal) = match (uv, &table.tangents) {
-            ([0.0, 0.0], Some([first, second])) => (limit, normal(combine(first, &points), combine(second, &points))),
-            ([0.0, 0.0], None) => (limit, normal(du, dv)),
-            _ => (limit + scale * offset, normal(du, dv)),
-        };
-        Jet { position, du: stretch * du, dv: stretch * dv, normal }
-    }
-
-    /// Evaluates a ptex face at (u,v), each 0 to 1: the patch and the jet, derivatives by the ptex parameters; `None`
-    /// in a hole.
-    ///
-    /// # Panics
-    /// `ptex` is not below [`ptex_count`](Self::ptex_count).
-    pub fn evaluate_ptex(&self, ptex: u32, uv: [f64; 2]) -> Option<(usize, Jet)> {
-        let (patch, local) = self.locate(ptex, uv)?;
-        Some((patch, self.patches()[patch].jet_to_ptex(self.evaluate(patch, local))))
-    }
 }
 
-impl Patch {
-    /// Turns a jet by patch-local parameters into one by the parameters of the ptex face.
-    pub fn jet_to_ptex(&self, jet: Jet) -> Jet {
-        let (du, dv) = match self.rotation {
-            0 => (jet.du, jet.dv),
-            1 => (-jet.dv, jet.du),
-            2 => (-jet.du, -jet.dv),
-            _ => (jet.dv, -jet.du),
-        };
-        let scale = self.scale();
-        Jet { du: scale[0] * du, dv: scale[1] * dv, ..jet }
-    }
-}
-
-fn combine(weights: &[f64], points: &[DVec3]) -> DVec3 {
+/// A weighted sum of points.
+pub(super) fn combine(weights: &[f64], points: &[DVec3]) -> DVec3 {
     weights.iter().zip(points).map(|(&w, &p)| w * p).sum()
-}
-
-fn sum(weights: &[[f64; 3]; 16], point: impl Fn(usize) -> DVec3) -> [DVec3; 3] {
-    let mut out = [DVec3::ZERO; 3];
-    for (k, w) in weights.iter().enumerate() {
-        let p = point(k);
-        out.iter_mut().zip(w).for_each(|(x, &w)| *x += w * p);
-    }
-    out
-}
-
-/// Unit normal of a parametrisation; zero where the derivatives are parallel or vanish.
-fn normal(du: DVec3, dv: DVec3) -> DVec3 {
-    // Normalised first: the product of derivatives of tiny models would underflow.
-    du.normalize_or_zero().cross(dv.normalize_or_zero()).normalize_or_zero()
 }

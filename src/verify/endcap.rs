@@ -1,8 +1,8 @@
 //! Tier `endcap`: how far OpenSubdiv's default end caps are from the exact limit. It reports, and never fails.
 
-use super::bin::{Bins, Difference, Key, Sample, Tolerance, angle_deg};
+use super::bin::{Bins, Check, Difference, Key, Normal, Sample};
 use super::regular::scattered;
-use super::{Subject, VerifyError};
+use super::{NORMAL_LIMIT, Subject, VerifyError, rounding};
 use crate::osd::{Answer, Bfr, Reference};
 
 const PER_FACE: usize = 64;
@@ -13,14 +13,18 @@ pub(super) fn run(subject: &Subject<'_>, bins: &mut Bins) -> Result<(), VerifyEr
     let answers = Bfr::new(subject.mesh, Bfr::DEFAULT_LEVELS)?.evaluate(&samples)?;
     bins.not_asked += answers.iter().filter(|a| a.answer == Answer::NotAsked).count();
     for (&(face, u, v), answer) in samples.iter().zip(&answers).filter(|(_, a)| a.answer == Answer::EndCap) {
-        let Some((patch, jet)) = subject.surface.evaluate_ptex(face, [u, v]) else { continue };
+        let sample = Sample { face, u, v };
+        let Some((patch, jet)) = subject.evaluate(sample) else { continue };
+        let error = jet.position.distance(answer.position) / subject.rounding.unit;
+        let turn = rounding::turn_deg(answer.du, answer.dv, subject.rounding.derivative(answer.cell));
+        let reference = answer.du.cross(answer.dv);
         let difference = Difference {
-            position: jet.position.distance(answer.position),
-            normal_deg: angle_deg(jet.normal, answer.du.cross(answer.dv)),
+            position: Check { error, allowed: f64::INFINITY },
+            normal: Normal::judge(jet.normal, reference, turn, NORMAL_LIMIT, f64::INFINITY),
             derivative: None,
         };
-        let key = Key { tier: "endcap", reference: "Bfr 2/6", kind: subject.surface.kind(patch), known_wrong: None };
-        bins.add(key, Tolerance::default(), Sample { face, u, v }, difference);
+        let kind = Some(subject.surface.kind(patch));
+        bins.add(Key { tier: "endcap", reference: "Bfr 2/6", kind, known_wrong: None }, sample, difference);
     }
     Ok(())
 }

@@ -1,17 +1,27 @@
 //! Tier `fragment`: every pixel of a rendered view, against the f64 limit at the same (patch, u, v) and against
-//! OpenSubdiv at the same (face, u, v).
+//! OpenSubdiv at the same (face, u, v); and the shader's evaluation on every patch, seen or not, against f64.
 
-use super::bin::{Bins, Difference, Key, Sample, Tolerance, angle_deg};
-use super::{Subject, VerifyError};
-use crate::field::Scout;
-use crate::gpu::{Gpu, NO_PATCH, View};
+use super::bin::{Bins, CAP, Check, Difference, Key, Normal, Sample};
+use super::{Subject, VerifyError, regular, rounding};
+use crate::field::{Camera, DEFAULT_FOV, Scout};
+use crate::gpu::{self, Gpu, NO_PATCH, SurfaceImage, Tables, View};
 use crate::osd::{Answer, Far, Reference};
+use crate::stam::Jet;
 use glam::DVec3;
 use rayon::prelude::*;
 
 /// Positions relative to the patch in f32: some 20 roundings of 6e-8 of the patch's size. The normal budget is that of
 /// design.md 3.2, held at the 99.99th percentile: 1/100 pixel of reflection line is 1.4e-3 degrees.
-const TOLERANCE: Tolerance = Tolerance { position: Some(2e-6), normal_deg: Some(1e-3), derivative: None };
+const POSITION: f64 = 2e-6;
+const NORMAL_DEG: f64 = 1e-3;
+
+/// Length by which f32 moves a derivative, in units of the larger of the two: 20 roundings of 2^-24 of the control net,
+/// which is three cells wide.
+const DERIVATIVE: f64 = 20.0 * 3.0 / 16_777_216.0;
+
+/// Samples of the shader's evaluation, and on one patch.
+const BUDGET: usize = 200_000;
+const PER_PATCH: usize = 8;
 
 pub(super) fn run(
     subject: &Subject<'_>,
@@ -20,46 +30,114 @@ pub(super) fn run(
     size: [u32; 2],
     bins: &mut Bins,
 ) -> Result<(), VerifyError> {
+    let tables = gpu.upload(subject.surface)?;
+    let largest = all_patches(subject, gpu, &tables, bins)?;
+    let Some(scout) = Scout::new(subject.surface) else { return Ok(()) };
+    let look = |camera: Camera| {
+        let light = scout.light(camera.eye, camera.up);
+        gpu.inspect(&tables, &View::new(camera, light))
+    };
+    let covered = |image: &SurfaceImage| image.patch.iter().any(|&patch| patch != NO_PATCH);
+    let image = look(scout.camera(size, DVec3::Z))?;
+    if covered(&image) {
+        return pixels(subject, far, &image, bins);
+    }
+    // A surface too thin for the pixels' centres is seen from near; one without area not at all.
+    let Some(jet) = largest else { return Ok(()) };
+    let image = look(close_up(&jet, size))?;
+    if !covered(&image) {
+        bins.nothing(Key { tier: "fragment", reference: "f64", kind: None, known_wrong: None });
+    }
+    pixels(subject, far, &image, bins)
+}
+
+/// A camera that looks at a square round a point, as wide as a quarter of its cell is in the direction in which it is thin.
+fn close_up(jet: &Jet, size: [u32; 2]) -> Camera {
+    let half = jet.du.length().min(jet.dv.length()) / 8.0;
+    let [across, along] = [jet.du, jet.dv].map(|d| d.normalize() * half);
+    let corners = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]];
+    let corners = corners.map(|[a, b]| jet.position + a * across + b * along);
+    Camera::fit(&corners, size, along, jet.normal, DEFAULT_FOV)
+}
+
+/// Local parameters of sample `i` of a patch: scattered ones, and deep ones where the levels of irregular patches are
+/// chosen and the digits of f32 run out.
+fn place(patch: usize, i: usize) -> [f32; 2] {
+    const DEEP: [[f32; 2]; 4] = [[6.0, 6.0], [6.0, 1.0], [12.0, 12.0], [0.0, 12.0]];
+    match i {
+        1 | 3 | 5 | 7 => DEEP[i / 2].map(|k| (-k).exp2()),
+        _ => regular::scatter((PER_PATCH * patch + i) as u32 % (1 << 20)).map(|x| x as f32),
+    }
+}
+
+/// Checks the shader's evaluation on every patch. Returns the jet, in f64, of the largest area whose normal f32 can tell.
+fn all_patches(subject: &Subject<'_>, gpu: &Gpu, tables: &Tables, bins: &mut Bins) -> Result<Option<Jet>, VerifyError> {
     let surface = subject.surface;
-    let Some(scout) = Scout::new(surface) else { return Ok(()) };
-    let camera = scout.camera(size, DVec3::Z);
-    let light = scout.light(camera.eye, camera.up);
-    let image = gpu.inspect(&gpu.upload(surface)?, &View::new(camera, light))?;
+    let count = surface.patches().len();
+    let each = (BUDGET / count.max(1)).clamp(1, PER_PATCH);
+    let samples: Vec<gpu::Sample> = (0..count)
+        .step_by((count * each).div_ceil(BUDGET).max(1))
+        // With fewer a patch, other ones on every patch.
+        .flat_map(|patch| (0..each).map(move |i| (patch, (patch + i) % PER_PATCH)))
+        .map(|(patch, i)| gpu::Sample { patch: patch as u32, uv: place(patch, i) })
+        .collect();
+    let exact: Vec<Jet> = samples.par_iter().map(|s| surface.evaluate(s.patch as usize, s.uv.map(f64::from))).collect();
+    let mut largest: Option<(f64, Jet)> = None;
+    for ((sample, jet), reference) in samples.iter().zip(gpu.evaluate(tables, &samples)?).zip(&exact) {
+        let ours = (subject.ours)(jet);
+        let difference = difference(subject, &ours, reference, 1.0);
+        let area = reference.du.cross(reference.dv).length();
+        let judged = matches!(difference.normal, Normal::Judged(_));
+        if judged && area.is_finite() && largest.as_ref().is_none_or(|(most, _)| area > *most) {
+            largest = Some((area, *reference));
+        }
+        let kind = Some(surface.kind(sample.patch as usize));
+        let key = Key { tier: "fragment", reference: "f64 all patches", kind, known_wrong: None };
+        bins.add(key, to_ptex(subject, sample.patch as usize, sample.uv), difference);
+    }
+    Ok(largest.map(|(_, jet)| jet))
+}
 
+fn to_ptex(subject: &Subject<'_>, patch: usize, uv: [f32; 2]) -> Sample {
+    let patch = &subject.surface.patches()[patch];
+    let [u, v] = patch.to_ptex(uv.map(f64::from));
+    Sample { face: patch.ptex, u, v }
+}
+
+/// Compares a jet in f32 with a reference in f64, differentiated in cells of the side `cell`.
+fn difference(subject: &Subject<'_>, ours: &Jet, reference: &Jet, cell: f64) -> Difference {
+    let rounding = &subject.rounding;
+    let longest = reference.du.length().max(reference.dv.length());
+    let error = DERIVATIVE * longest + rounding.derivative(cell);
+    let turn = rounding::turn_deg(reference.du, reference.dv, error);
+    Difference {
+        position: Check {
+            error: ours.position.distance(reference.position) / rounding.unit,
+            allowed: POSITION + rounding.position(),
+        },
+        normal: Normal::judge(ours.normal, reference.normal, turn, CAP * NORMAL_DEG, NORMAL_DEG.max(turn)),
+        derivative: None,
+    }
+}
+
+fn pixels(subject: &Subject<'_>, far: &mut Far, image: &SurfaceImage, bins: &mut Bins) -> Result<(), VerifyError> {
+    let surface = subject.surface;
     let pixels: Vec<usize> = (0..image.patch.len()).filter(|&i| image.patch[i] != NO_PATCH).collect();
-    let local = |i: usize| (image.patch[i] as usize, image.uv[i].map(f64::from));
-    let exact: Vec<_> = pixels
-        .par_iter()
-        .map(|&i| {
-            let (patch, uv) = local(i);
-            surface.evaluate(patch, uv)
-        })
-        .collect();
-    let samples: Vec<(u32, f64, f64)> = pixels
-        .iter()
-        .map(|&i| {
-            let (patch, uv) = local(i);
-            let [u, v] = surface.patches()[patch].to_ptex(uv);
-            (surface.patches()[patch].ptex, u, v)
-        })
-        .collect();
-    let answers = far.evaluate(&samples)?;
+    let exact: Vec<Jet> =
+        pixels.par_iter().map(|&i| surface.evaluate(image.patch[i] as usize, image.uv[i].map(f64::from))).collect();
+    let samples: Vec<Sample> = pixels.iter().map(|&i| to_ptex(subject, image.patch[i] as usize, image.uv[i])).collect();
+    let answers = far.evaluate(&samples.iter().map(|s| (s.face, s.u, s.v)).collect::<Vec<_>>())?;
 
-    for (((&i, jet), &(face, u, v)), answer) in pixels.iter().zip(&exact).zip(&samples).zip(&answers) {
-        let kind = surface.kind(image.patch[i] as usize);
+    for (((&i, exact), &sample), answer) in pixels.iter().zip(&exact).zip(&samples).zip(&answers) {
         let normal = DVec3::from_array(image.normal[i].map(f64::from));
-        let mut add = |reference, position: DVec3, reference_normal: DVec3| {
-            let difference = Difference {
-                position: image.position[i].distance(position),
-                normal_deg: angle_deg(normal, reference_normal),
-                derivative: None,
-            };
-            let key = Key { tier: "fragment", reference, kind, known_wrong: None };
-            bins.add(key, TOLERANCE, Sample { face, u, v }, difference);
-        };
-        add("f64", jet.position, jet.normal);
+        let ours = (subject.ours)(Jet { position: image.position[i], normal, ..*exact });
+        let kind = Some(surface.kind(image.patch[i] as usize));
+        let key = |reference| Key { tier: "fragment", reference, kind, known_wrong: None };
+        bins.add(key("f64"), sample, difference(subject, &ours, exact, 1.0));
         if answer.answer == Answer::Regular {
-            add("Far level 10", answer.position, answer.du.cross(answer.dv));
+            let jet =
+                Jet { position: answer.position, du: answer.du, dv: answer.dv, normal: answer.du.cross(answer.dv) };
+            bins.add(key("Far level 10"), sample, difference(subject, &ours, &jet, answer.cell));
         }
     }
     Ok(())

@@ -2,7 +2,7 @@
 //! by tier (design.md section 6).
 //!
 //! Every tier bins its samples by patch kind and names the worst one. Where the reference itself is known to be wrong,
-//! the samples are kept apart with the reason ([`KnownWrong`]): they are neither a pass nor a failure.
+//! the samples are kept apart with the reason ([`KnownWrong`]) and held to what any wrong reference can be off.
 
 mod bin;
 mod dyadic;
@@ -10,6 +10,7 @@ mod endcap;
 mod fragment;
 mod regular;
 mod report;
+mod rounding;
 mod vertex;
 
 pub use bin::Sample;
@@ -17,9 +18,11 @@ pub use report::{KnownWrong, MeshReport, Report, Tier};
 
 use crate::gpu::{Gpu, GpuError};
 use crate::mesh::SubdivMesh;
+use crate::osd::ReferenceJet;
 use crate::patch::PatchError;
-use crate::stam::LimitSurface;
-use bin::Bins;
+use crate::stam::{Jet, LimitSurface};
+use bin::{Bins, Check, Difference, Normal};
+use rounding::{LEAST_EXTENT, Rounding};
 
 /// Why a mesh was not verified.
 #[derive(Debug, thiserror::Error)]
@@ -27,6 +30,15 @@ pub enum VerifyError {
     /// The mesh has no limit surface to verify.
     #[error(transparent)]
     Patch(#[from] PatchError),
+    /// There is nothing to check, which is not a pass.
+    #[error("no face has a limit surface (holes, or boundary rule none); nothing to check")]
+    NoSurface,
+    /// Errors of such a mesh would underflow to 0, which is not a pass either.
+    #[error("it spans {extent:e} units, too few to tell errors from underflow; scale it to {LEAST_EXTENT:e} or more")]
+    TooSmall {
+        /// Largest side of the bounding box.
+        extent: f64,
+    },
     /// A reference evaluator failed.
     #[error(transparent)]
     Osd(#[from] crate::osd::Error),
@@ -35,10 +47,18 @@ pub enum VerifyError {
     Gpu(#[from] GpuError),
 }
 
+/// Degrees by which rounding may turn a reference's normal before it is skipped instead of judged: the accuracy that the
+/// fragments are held to. Beyond it the sample says nothing that a picture could show.
+const NORMAL_LIMIT: f64 = 1e-3;
+
 /// Everything a tier may look at.
 struct Subject<'a> {
     mesh: &'a SubdivMesh,
     surface: &'a LimitSurface,
+    rounding: Rounding,
+    /// Every jet of ours passes through it before it is judged, those of the GPU too. The identity, but for the test
+    /// that plants errors.
+    ours: &'a dyn Fn(Jet) -> Jet,
 }
 
 impl Subject<'_> {
@@ -48,20 +68,57 @@ impl Subject<'_> {
         let stride = (count * per_face).div_ceil(budget).max(1);
         (0..count as u32).step_by(stride)
     }
+
+    /// Our patch and jet, derivatives by the ptex parameters; `None` in a hole.
+    fn evaluate(&self, at: Sample) -> Option<(usize, Jet)> {
+        let (patch, jet) = self.surface.evaluate_ptex(at.face, [at.u, at.v])?;
+        Some((patch, (self.ours)(jet)))
+    }
+
+    /// Compares our jet with a reference's. The tolerances of position, normal and derivative are what is allowed near
+    /// the origin; rounding comes on top, as seen in the smaller of the two patches that answered.
+    fn difference(&self, patch: usize, ours: &Jet, theirs: &ReferenceJet, tolerances: [f64; 3]) -> Difference {
+        let [position, normal, derivative] = tolerances;
+        let rounding = &self.rounding;
+        let [u, v] = self.surface.patches()[patch].scale();
+        let derivative_error = rounding.derivative(theirs.cell.min(1.0 / u.max(v)));
+        let turn = rounding::turn_deg(theirs.du, theirs.dv, derivative_error);
+        let derivatives = [ours.du.distance(theirs.du), ours.dv.distance(theirs.dv)];
+        Difference {
+            position: Check {
+                error: ours.position.distance(theirs.position) / rounding.unit,
+                allowed: position + rounding.position(),
+            },
+            normal: Normal::judge(ours.normal, theirs.du.cross(theirs.dv), turn, NORMAL_LIMIT, normal + turn),
+            derivative: Some(Check {
+                error: bin::larger(derivatives[0], derivatives[1]) / rounding.unit,
+                allowed: derivative + derivative_error / rounding.unit,
+            }),
+        }
+    }
 }
 
 /// Runs all tiers on a mesh; the fragment tier renders at `size`.
 ///
 /// # Errors
-/// The mesh is refused, a reference evaluator fails, or the GPU does.
+/// The mesh is refused, has no surface or is too small to judge; a reference evaluator fails, or the GPU does.
 pub fn verify(mesh: &SubdivMesh, gpu: &Gpu, size: [u32; 2]) -> Result<MeshReport, VerifyError> {
     let surface = LimitSurface::new(mesh)?;
-    let bins = tiers(&Subject { mesh, surface: &surface }, gpu, size)?;
+    if surface.patches().is_empty() {
+        return Err(VerifyError::NoSurface);
+    }
+    let (low, high) = mesh.bounds().unwrap_or_default();
+    let extent = (high - low).max_element();
+    if extent > 0.0 && extent < LEAST_EXTENT {
+        return Err(VerifyError::TooSmall { extent });
+    }
+    let subject = Subject { mesh, surface: &surface, rounding: Rounding::of(mesh), ours: &|jet| jet };
+    let bins = tiers(&subject, gpu, size)?;
     Ok(MeshReport::new(mesh, &surface, bins))
 }
 
 fn tiers(subject: &Subject<'_>, gpu: &Gpu, size: [u32; 2]) -> Result<Bins, VerifyError> {
-    let mut bins = Bins::new(subject.surface.diagonal());
+    let mut bins = Bins::default();
     vertex::run(subject, &mut bins)?;
     let mut far = dyadic::reference(subject)?;
     dyadic::run(subject, &mut far, &mut bins)?;
@@ -77,23 +134,73 @@ mod tests {
     use crate::mesh;
     use glam::DVec3;
 
-    /// Every check can fail: a control point moved by 1e-7 of the diagonal, in the surface but not in the reference,
-    /// turns up in every tier that judges f64, and one of 1e-5 in the fragments.
+    /// The tiers that fail when our jets are changed.
+    fn failing(mesh: &SubdivMesh, gpu: &Gpu, ours: &dyn Fn(Jet) -> Jet) -> Vec<&'static str> {
+        let surface = LimitSurface::new(mesh).expect("the mesh is valid");
+        let subject = Subject { mesh, surface: &surface, rounding: Rounding::of(mesh), ours };
+        let report = MeshReport::new(mesh, &surface, tiers(&subject, gpu, [64, 64]).expect("it runs"));
+        let mut tiers: Vec<_> = report.tiers.iter().filter(|row| !row.pass).map(|row| row.tier).collect();
+        tiers.dedup();
+        assert_eq!(report.pass, tiers.is_empty() && report.reference_known_wrong.iter().all(|known| known.row.pass));
+        tiers
+    }
+
+    /// Every check can fail: an error of 1e-7 of the diagonal turns up in every tier that judges f64, larger ones in the
+    /// fragments, and so does a normal that is wrong, zero or not a number.
     #[test]
     fn planted_errors_are_caught_by_every_tier() {
         let mesh = mesh::sample();
         let gpu = Gpu::new().expect("the fragment tier needs an adapter");
-        for (shift, expected) in [(1e-7, &["vertex", "dyadic", "regular"][..]), (1e-4, &["fragment"][..])] {
-            let mut moved = mesh.clone();
-            moved.points.iter_mut().step_by(7).for_each(|p| *p += DVec3::splat(shift * mesh.diagonal()));
-            let surface = LimitSurface::new(&moved).expect("the sample is valid");
-            let bins = tiers(&Subject { mesh: &mesh, surface: &surface }, &gpu, [64, 64]).expect("it runs");
-            let report = MeshReport::new(&mesh, &surface, bins);
-            assert!(!report.pass);
-            for tier in expected {
-                let failed = report.tiers.iter().any(|row| row.tier == *tier && !row.pass);
-                assert!(failed, "{tier} missed an error of {shift:e}");
-            }
+        let unit = mesh.diagonal();
+        let every = ["vertex", "dyadic", "regular", "fragment"];
+        assert_eq!(failing(&mesh, &gpu, &|jet| jet), [""; 0]);
+        let moved = |by: f64| move |jet: Jet| Jet { position: jet.position + DVec3::splat(by * unit), ..jet };
+        assert_eq!(failing(&mesh, &gpu, &moved(1e-7)), every[..3]);
+        assert_eq!(failing(&mesh, &gpu, &moved(1e-4)), every);
+        assert_eq!(failing(&mesh, &gpu, &moved(f64::NAN)), every);
+        let turned = |jet: Jet| Jet { normal: jet.normal + 1e-4 * jet.normal.any_orthonormal_vector(), ..jet };
+        assert_eq!(failing(&mesh, &gpu, &turned), every);
+        for normal in [DVec3::ZERO, DVec3::NAN] {
+            assert_eq!(failing(&mesh, &gpu, &|jet| Jet { normal, ..jet }), every);
+            // One in a hundred is enough.
+            let count = std::cell::Cell::new(0);
+            let rare = |jet: Jet| {
+                count.set(count.get() + 1);
+                if count.get() % 100 == 0 { Jet { normal, ..jet } } else { jet }
+            };
+            assert_eq!(failing(&mesh, &gpu, &rare), every);
         }
+    }
+
+    /// A face that one side calls a hole and the other does not fails, either way round.
+    #[test]
+    fn disagreement_about_holes_fails() {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes/cube.obj");
+        let whole = mesh::read(&path).expect("a test mesh");
+        let holed = SubdivMesh { holes: vec![2], ..whole.clone() };
+        let gpu = Gpu::new().expect("the fragment tier needs an adapter");
+        for (theirs, ours) in [(&whole, &holed), (&holed, &whole)] {
+            let surface = LimitSurface::new(ours).expect("the mesh is valid");
+            let subject = Subject { mesh: theirs, surface: &surface, rounding: Rounding::of(theirs), ours: &|jet| jet };
+            let report = MeshReport::new(theirs, &surface, tiers(&subject, &gpu, [16, 16]).expect("it runs"));
+            let failed = |tier| report.tiers.iter().filter(|row| row.tier == tier).map(|row| row.failed).sum::<usize>();
+            assert!(failed("dyadic") >= 25, "{report}");
+            assert!(!report.pass);
+        }
+    }
+
+    /// Where the reference is known to be wrong, ours is not free: a gross error fails there too.
+    #[test]
+    fn gross_errors_fail_where_the_reference_is_wrong() {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes/dart.obj");
+        let mesh = mesh::read(&path).expect("a test mesh");
+        let gpu = Gpu::new().expect("the fragment tier needs an adapter");
+        let surface = LimitSurface::new(&mesh).expect("the mesh is valid");
+        let by = DVec3::splat(mesh.diagonal());
+        let ours = |jet: Jet| Jet { position: jet.position + by, ..jet };
+        let subject = Subject { mesh: &mesh, surface: &surface, rounding: Rounding::of(&mesh), ours: &ours };
+        let report = MeshReport::new(&mesh, &surface, tiers(&subject, &gpu, [16, 16]).expect("it runs"));
+        assert!(!report.reference_known_wrong.is_empty());
+        assert!(report.reference_known_wrong.iter().all(|known| !known.row.pass));
     }
 }

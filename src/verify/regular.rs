@@ -1,12 +1,13 @@
 //! Tier `regular`: anywhere in OpenSubdiv's regular patches. At isolation 10 they cover all but 2^-20 of the area of an
 //! irregular face, so irregular patches are checked here too, away from dyadic points.
 
-use super::bin::{Bins, Difference, Key, Sample, Tolerance, angle_deg};
+use super::bin::{Bins, Key, Sample};
 use super::{Subject, VerifyError};
 use crate::osd::{Answer, Bfr, Far, Reference};
 
 /// Position as at vertices; a derivative may lose five times as much, OpenSubdiv's own rule for its regressions.
-const TOLERANCE: Tolerance = Tolerance { position: Some(1e-12), normal_deg: Some(1e-6), derivative: Some(5e-12) };
+/// Rounding of world coordinates comes on top ([`Rounding`](super::rounding::Rounding)).
+const TOLERANCES: [f64; 3] = [1e-12, 1e-6, 5e-12];
 
 const PER_FACE: usize = 32;
 const BUDGET: usize = 200_000;
@@ -34,15 +35,16 @@ pub(super) fn run(subject: &Subject<'_>, far: &mut Far, bins: &mut Bins) -> Resu
     let evaluators: [(&str, &mut dyn Reference); 2] = [("Far level 10", far), ("Bfr", &mut bfr)];
     for (reference, evaluator) in evaluators {
         let answers = evaluator.evaluate(&samples)?;
+        bins.not_asked += answers.iter().filter(|a| a.answer == Answer::NotAsked).count();
         for (&(face, u, v), answer) in samples.iter().zip(&answers).filter(|(_, a)| a.answer == Answer::Regular) {
-            let Some((patch, jet)) = subject.surface.evaluate_ptex(face, [u, v]) else { continue };
-            let difference = Difference {
-                position: jet.position.distance(answer.position),
-                normal_deg: angle_deg(jet.normal, answer.du.cross(answer.dv)),
-                derivative: Some(jet.du.distance(answer.du).max(jet.dv.distance(answer.dv))),
-            };
-            let key = Key { tier: "regular", reference, kind: subject.surface.kind(patch), known_wrong: None };
-            bins.add(key, TOLERANCE, Sample { face, u, v }, difference);
+            let sample = Sample { face, u, v };
+            let ours = subject.evaluate(sample);
+            let kind = ours.map(|(patch, _)| subject.surface.kind(patch));
+            let key = Key { tier: "regular", reference, kind, known_wrong: None };
+            match ours {
+                Some((patch, jet)) => bins.add(key, sample, subject.difference(patch, &jet, answer, TOLERANCES)),
+                None => bins.mismatch(key, sample),
+            }
         }
     }
     Ok(())

@@ -1,11 +1,14 @@
 //! Tier `vertex`: the limit at refined vertices against OpenSubdiv's limit masks.
 
-use super::bin::{Bins, Difference, Key, Sample, Tolerance, angle_deg};
-use super::{Subject, VerifyError};
-use crate::osd::{INFINITE_SHARPNESS, Level, Refiner, Rule};
+use super::bin::{Bins, Check, Difference, Key, Normal, Sample};
+use super::{NORMAL_LIMIT, Subject, VerifyError, rounding};
+use crate::osd::{Level, Refiner, Rule};
+use glam::DVec3;
 
-/// Positions: some 20 roundings of 1e-16 on each side, level by level. Normals: those of dyadic points.
-const TOLERANCE: Tolerance = Tolerance { position: Some(1e-12), normal_deg: Some(1e-6), derivative: None };
+/// Some 20 roundings of 1e-16 on each side, level by level. Normals: OpenSubdiv's tangents are differences of world
+/// coordinates. Rounding of world coordinates comes on top ([`Rounding`](super::rounding::Rounding)).
+const POSITION: f64 = 1e-12;
+const NORMAL_DEG: f64 = 1e-6;
 
 /// Vertices that a uniform refinement may have: memory, and seconds.
 const BUDGET: usize = 400_000;
@@ -16,16 +19,35 @@ pub(super) fn run(subject: &Subject<'_>, bins: &mut Bins) -> Result<(), VerifyEr
     let levels = (0..refiner.level_count()).map(|i| refiner.level(i)).collect::<Result<Vec<_>, _>>()?;
     let Some(last) = levels.last() else { return Ok(()) };
     let points = refiner.interpolate(&subject.mesh.points)?;
-    let [limits, first, second] = refiner.limit(&points[points.len() - last.vertex_count()..])?;
-    let traits = Traits::of(last);
+    let last_points = &points[points.len() - last.vertex_count()..];
+    let [limits, first, second] = refiner.limit(last_points)?;
+    let traits = Traits::of(last, last_points);
     for (vertex, sample) in locations(&levels) {
-        let Some((patch, jet)) = subject.surface.evaluate_ptex(sample.face, [sample.u, sample.v]) else { continue };
-        let smooth = last.vertex_rules[vertex] == Rule::Smooth;
         let known_wrong = traits.known_wrong(last, vertex);
-        let normal_deg = if smooth { angle_deg(jet.normal, first[vertex].cross(second[vertex])) } else { None };
-        let key = Key { tier: "vertex", reference: "limit masks", kind: subject.surface.kind(patch), known_wrong };
-        let position = jet.position.distance(limits[vertex]);
-        bins.add(key, TOLERANCE, sample, Difference { position, normal_deg, derivative: None });
+        let ours = subject.evaluate(sample);
+        let kind = ours.map(|(patch, _)| subject.surface.kind(patch));
+        let key = Key { tier: "vertex", reference: "limit masks", kind, known_wrong };
+        let Some((_, jet)) = ours else {
+            bins.mismatch(key, sample);
+            continue;
+        };
+        let rounding = &subject.rounding;
+        let allowed = match known_wrong {
+            None => POSITION + rounding.position(),
+            Some(_) => 2.0 * traits.reach[vertex] / rounding.unit + rounding.position(),
+        };
+        let normal = match last.vertex_rules[vertex] {
+            Rule::Smooth if known_wrong.is_none() => {
+                // Tangent masks are cosines times at most 4 + 2 x 1.6 for each face, on average 2/pi of that.
+                let weights = 5.0 * f64::from(traits.valence[vertex]);
+                let turn = rounding::turn_deg(first[vertex], second[vertex], weights * rounding.point);
+                let reference = first[vertex].cross(second[vertex]);
+                Normal::judge(jet.normal, reference, turn, NORMAL_LIMIT, NORMAL_DEG + turn)
+            }
+            _ => Normal::Unknown,
+        };
+        let error = jet.position.distance(limits[vertex]) / rounding.unit;
+        bins.add(key, sample, Difference { position: Check { error, allowed }, normal, derivative: None });
     }
     Ok(())
 }
@@ -34,26 +56,24 @@ pub(super) fn run(subject: &Subject<'_>, bins: &mut Bins) -> Result<(), VerifyEr
 struct Traits {
     valence: Vec<u32>,
     restless: Vec<bool>,
+    /// Distance to the farthest point of the faces round each vertex. A limit mask is a convex combination of these
+    /// points, and so is the limit: however wrong a mask, the two are at most twice as far apart.
+    reach: Vec<f64>,
 }
 
 impl Traits {
-    fn of(level: &Level) -> Self {
-        let finite = |s: f32| s > 0.0 && s < INFINITE_SHARPNESS;
-        let mut restless: Vec<bool> = level.vertex_sharpness.iter().map(|&s| finite(s)).collect();
+    fn of(level: &Level, points: &[DVec3]) -> Self {
         let mut valence = vec![0; level.vertex_count()];
+        let mut reach = vec![0f64; level.vertex_count()];
         for face in 0..level.face_count() {
-            let corners = level.corners(face);
-            for i in corners.clone() {
-                let [vertex, next] = [i, if i + 1 == corners.end { corners.start } else { i + 1 }]
-                    .map(|i| level.face_vertices[i] as usize);
+            for [vertex, ..] in level.edges_of_face(face) {
                 valence[vertex] += 1;
-                if finite(level.edge_sharpness[level.face_edges[i] as usize]) {
-                    restless[vertex] = true;
-                    restless[next] = true;
+                for [other, ..] in level.edges_of_face(face) {
+                    reach[vertex] = reach[vertex].max(points[vertex].distance(points[other]));
                 }
             }
         }
-        Self { valence, restless }
+        Self { valence, restless: level.restless(), reach }
     }
 
     /// Measured on 3.5.0; see docs/ARCHITECTURE.md.
