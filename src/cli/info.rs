@@ -82,7 +82,7 @@ fn collect(mesh: &SubdivMesh, surface: &LimitSurface, control: &Level) -> Info {
         holes: control.face_holes.iter().filter(|&&hole| hole != 0).count(),
         classes: surface.classes().len(),
         class_table_bytes: surface.tables().iter().map(|table| table.bytes()).sum(),
-        gpu_table_bytes: gpu_table_bytes(surface),
+        gpu_table_bytes: gpu::tables::bytes(surface, gpu::TableLayout::Auto),
         boundary: match mesh.boundary {
             Boundary::None => "none",
             Boundary::EdgeOnly => "edge only",
@@ -108,11 +108,6 @@ fn collect(mesh: &SubdivMesh, surface: &LimitSurface, control: &Level) -> Info {
     edges(control, &mut info);
     vertices(control, &mut info);
     info
-}
-
-fn gpu_table_bytes(surface: &LimitSurface) -> u64 {
-    let irregular = surface.patches().iter().filter(|patch| patch.kind != PatchKind::Regular).count();
-    16 * gpu::tables::points_texels(surface.patches().len() - irregular, irregular)
 }
 
 fn edges(control: &Level, info: &mut Info) {

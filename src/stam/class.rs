@@ -20,7 +20,6 @@ use super::rows::{Row, Rows};
 use super::surface::combine;
 use crate::patch::RingClass;
 use glam::DVec3;
-use std::borrow::Cow;
 
 /// Levels kept in f64: the smallest u or v above zero that doubles near 1 resolve.
 pub const LEVELS: usize = 52;
@@ -88,10 +87,11 @@ impl ClassTable {
         self.limit.len()
     }
 
-    /// Mhat(n) at index n - 1, [`LEVELS`] of them: [`WINDOW_POINTS`] rows of K weights, one after the other. Computed anew
-    /// for classes too large to keep them.
-    pub fn level_weights(&self) -> Cow<'_, [Vec<f64>]> {
-        if self.levels.is_empty() { Cow::Owned(self.matrices()) } else { Cow::Borrowed(&self.levels) }
+    /// Weights of the K control points in window point `point` (0 to [`WINDOW_POINTS`]) of level `level`, 1 to [`LEVELS`];
+    /// `None` for classes too large to keep their matrices.
+    pub fn weights(&self, level: usize, point: usize) -> Option<&[f64]> {
+        let size = self.limit.len();
+        Some(&self.levels.get(level - 1)?[point * size..(point + 1) * size])
     }
 
     /// Phat(n) for n = `level`, 1 to [`LEVELS`], from control points relative to the limit position s0.

@@ -79,20 +79,14 @@ pub fn bytes(surface: &LimitSurface, layout: TableLayout) -> u64 {
     Plan::new(surface, layout, u64::MAX).bytes
 }
 
-/// Texels of points in the expanded layout.
-pub(super) fn expanded_texels(regular: usize, irregular: usize) -> u64 {
-    let levels = TABLE_LEVELS * LEVEL_TEXELS as usize + 1;
-    (regular * REGULAR_TEXELS + irregular * levels) as u64
-}
-
 /// A layout applied to a surface: where everything goes.
 #[derive(Debug)]
 pub(super) struct Plan {
     pub layout: TableLayout,
     /// Levels stored point by point of the patches that have a class.
     pub expanded: usize,
-    /// The rest, class by class; empty where all levels are expanded.
-    pub bases: Vec<Basis>,
+    /// The rest, class by class; none where all levels are expanded.
+    pub bases: Vec<Option<Basis>>,
     /// Texels in the table of points: matrices first, then patches.
     pub texels: u64,
     /// Bytes of all tables.
@@ -119,7 +113,7 @@ impl Plan {
 
     fn of<S: PatchSource + ?Sized>(source: &S, census: &Census, layout: TableLayout) -> Plan {
         let expanded = layout.expanded_levels();
-        let bases: Vec<Basis> = match expanded < TABLE_LEVELS {
+        let bases: Vec<Option<Basis>> = match expanded < TABLE_LEVELS {
             true => source.classes().par_iter().map(|table| Basis::new(table, expanded + 1..=TABLE_LEVELS)).collect(),
             false => Vec::new(),
         };
@@ -134,10 +128,15 @@ impl Plan {
         plan
     }
 
+    /// What gives the levels of a class that are not expanded.
+    pub fn basis(&self, class: usize) -> Option<&Basis> {
+        self.bases.get(class)?.as_ref()
+    }
+
     /// Texels of a patch: its expanded levels, its picked points in groups of 4 (x, y and z each), its normal.
     pub fn patch_texels(&self, irregular: bool, class: Option<usize>) -> usize {
         let levels = |count: usize| count * LEVEL_TEXELS as usize + 1;
-        match (irregular, class.and_then(|class| self.bases.get(class))) {
+        match (irregular, class.and_then(|class| self.basis(class))) {
             (false, _) => REGULAR_TEXELS,
             (true, Some(basis)) => levels(self.expanded) + 3 * basis.groups(),
             (true, None) => levels(TABLE_LEVELS),
@@ -146,7 +145,8 @@ impl Plan {
 
     /// Texels of the matrix of a class: 9 rows of 4 points for each picked point of each level.
     pub fn matrix_texels(&self, class: usize) -> usize {
-        (TABLE_LEVELS - self.expanded) * 4 * self.bases[class].groups() * (LEVEL_TEXELS / 3) as usize
+        let groups = self.basis(class).map_or(0, Basis::groups);
+        (TABLE_LEVELS - self.expanded) * 4 * groups * (LEVEL_TEXELS / 3) as usize
     }
 }
 

@@ -102,17 +102,16 @@ impl Tables {
 /// What the tables leave out beyond their last level, as part of the largest point there: how much the points of a class
 /// change from level [`TABLE_LEVELS`] to the deepest one of f64. Tangents are off by as much where u and v are below
 /// 2^-24, and positions by lambda^24 of that (5e-10 for valence 3, 7e-6 for valence 8 of a quantity of that size).
-pub fn tail_error(class: &ClassTable) -> f64 {
-    let (width, matrices) = (class.support(), class.level_weights());
+/// `None` for classes that keep no matrices.
+pub fn tail_error(class: &ClassTable) -> Option<f64> {
     let size = |row: &mut dyn Iterator<Item = f64>| row.map(|x| x * x).sum::<f64>().sqrt();
     let (mut change, mut largest) = (0.0f64, 0.0f64);
     for point in 0..WINDOW_POINTS {
-        let [last, limit] =
-            [TABLE_LEVELS, LEVELS].map(|level| &matrices[level - 1][point * width..(point + 1) * width]);
+        let [last, limit] = [class.weights(TABLE_LEVELS, point)?, class.weights(LEVELS, point)?];
         change = change.max(size(&mut last.iter().zip(limit).map(|(a, b)| a - b)));
         largest = largest.max(size(&mut limit.iter().copied()));
     }
-    change / largest
+    Some(change / largest)
 }
 
 pub(super) fn upload<S: PatchSource + ?Sized>(
@@ -136,9 +135,4 @@ pub(super) fn upload<S: PatchSource + ?Sized>(
         layout: plan.layout,
         unit,
     })
-}
-
-/// Texels that the points of a surface take in the expanded layout (16 bytes each).
-pub fn points_texels(regular: usize, irregular: usize) -> u64 {
-    layout::expanded_texels(regular, irregular)
 }

@@ -45,10 +45,12 @@ pub(super) fn pack<S: PatchSource + ?Sized>(
     let mut writer = device.block_table("the points of the patches", plan.texels, format)?;
     let mut next = 0;
     let mut matrices = Vec::with_capacity(plan.bases.len());
-    for (class, basis) in plan.bases.iter().enumerate() {
+    for class in 0..plan.bases.len() {
         let size = plan.matrix_texels(class);
-        place_matrix(basis, writer.room(size));
-        writer.flush();
+        if let Some(basis) = plan.basis(class) {
+            place_matrix(basis, writer.room(size));
+            writer.flush();
+        }
         matrices.push(next as u32);
         next += size;
     }
@@ -74,12 +76,12 @@ pub(super) fn pack<S: PatchSource + ?Sized>(
             rest = after;
         }
         let place = |(patch, first, slot): (usize, usize, &mut [[f32; 4]])| {
-            let class = source.class(patch).filter(|&class| class < plan.bases.len());
-            let basis = class.map(|class| &plan.bases[class]);
+            let class = source.class(patch);
+            let basis = class.and_then(|class| plan.basis(class));
             let levels = basis.map_or(TABLE_LEVELS, |basis| basis.deepest().max(plan.expanded));
             let mut placed = place(source.patch(patch, levels), plan.expanded, basis, slot, unit);
             placed.record[0] = first as u32;
-            placed.record[3] = class.map_or(0, |class| matrices[class]);
+            placed.record[3] = class.and_then(|class| matrices.get(class)).copied().unwrap_or(0);
             placed
         };
         let placed: Vec<Placed> = slots.into_par_iter().map(place).collect();
