@@ -167,6 +167,17 @@ fn normals_exist_where_derivatives_vanish() {
     }
 }
 
+/// A boundary that runs straight through the only face of a vertex: no osculating plane, but a tangent plane.
+#[test]
+fn straight_corners_have_a_normal() {
+    let mut corner = fan(1, false);
+    corner.points =
+        [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.1, 1.0, 0.4], [-0.9, 0.0, 0.0]].map(DVec3::from_array).to_vec();
+    let surface = LimitSurface::new(&corner).expect("it has a surface");
+    let [tip, near] = [0.0, 1e-4].map(|h| surface.evaluate_ptex(0, [h, h]).expect("no hole").1.normal);
+    assert!(angle(tip, near) < 0.1, "{tip} {near}");
+}
+
 /// Second derivatives against central differences of the first ones.
 #[test]
 fn second_derivatives_are_those_of_the_first() {

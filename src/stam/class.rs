@@ -42,6 +42,8 @@ pub struct ClassTable {
     /// for corners, which have none. The levels converge to it like (next eigenvalue / lambda)^n, which is slow for high
     /// valence (0.82^n for N = 8), and like 1/n where the matrix is defective.
     pub tangents: Option<[Vec<f64>; 2]>,
+    /// Takes the place of the second one where the two are parallel (a single boundary face along a straight line).
+    pub(super) spare: Option<Vec<f64>>,
     /// A.
     step: Vec<Row>,
     /// A': the window points of the next level.
@@ -56,9 +58,9 @@ impl ClassTable {
         let rows = Rows::new(class);
         let step = rows.step();
         let limit = left_eigenvector_of_one(&step);
-        let Modes { lambda, tangents } = Modes::of(class);
+        let Modes { lambda, tangents, spare } = Modes::of(class);
         let windows: Vec<Row> = (1..=WINDOW_POINTS as isize).map(|k| rows.refined(k % 5 - 1, k / 5 - 1)).collect();
-        let mut table = Self { lambda, limit, tangents, step, windows, levels: Vec::new() };
+        let mut table = Self { lambda, limit, tangents, spare, step, windows, levels: Vec::new() };
         if class.faces <= KEPT_FACES {
             table.levels = table.matrices();
         }

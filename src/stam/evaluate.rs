@@ -115,9 +115,12 @@ fn unit(du: DVec3, dv: DVec3) -> DVec3 {
 fn tip_normal(table: &ClassTable, points: &[DVec3]) -> Option<DVec3> {
     let [first, second] = table.tangents.as_ref()?.each_ref().map(|weights| combine(weights, points));
     let size = points.iter().fold(0.0f64, |size, p| size.max(p.length()));
-    let small = |d: DVec3| d.length() <= 1e-12 * size;
-    let normal = first.normalize_or_zero().cross(second.normalize_or_zero());
-    (!small(first) && !small(second) && normal.length() > 1e-12).then(|| normal.normalize())
+    let normal = |a: DVec3, b: DVec3| {
+        let across = a.normalize_or_zero().cross(b.normalize_or_zero());
+        let clear = a.length().min(b.length()) > 1e-12 * size && across.length() > 1e-12;
+        clear.then(|| across.normalize())
+    };
+    normal(first, second).or_else(|| normal(first, combine(table.spare.as_ref()?, points)))
 }
 
 impl LimitSurface {

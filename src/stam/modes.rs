@@ -15,6 +15,8 @@ pub(super) struct Modes {
     pub lambda: f64,
     /// Two left vectors whose values span the tangent plane; their cross product points along the normal.
     pub tangents: Option<[Vec<f64>; 2]>,
+    /// What takes the place of the second one where the two are parallel.
+    pub spare: Option<Vec<f64>>,
 }
 
 fn eigenvalue(angle: f64) -> f64 {
@@ -73,14 +75,14 @@ impl Modes {
         let faces = f64::from(class.faces);
         match (class.closed, class.tip, class.sharp_spoke) {
             // Two faces: the eigenvalues 1/4, 1/4 and -1/4 make normals alternate from level to level for ever.
-            (true, Tip::Smooth, None) if class.faces == 2 => Self { lambda: 0.25, tangents: None },
+            (true, Tip::Smooth, None) if class.faces == 2 => Self { lambda: 0.25, tangents: None, spare: None },
             (true, Tip::Smooth, None) => {
                 let angle = TAU / faces;
                 let tangents = [0.0, 0.25 * TAU].map(|phase| mode(class, angle, |i| (i as f64 * angle - phase).cos()));
-                Self { lambda: eigenvalue(angle), tangents: Some(tangents) }
+                Self { lambda: eigenvalue(angle), tangents: Some(tangents), spare: None }
             }
             (true, Tip::Smooth, Some(sharp)) => Self::dart(class, usize::from(sharp)),
-            (true, _, _) => Self { lambda: eigenvalue(0.0), tangents: None },
+            (true, _, _) => Self { lambda: eigenvalue(0.0), tangents: None, spare: None },
             (false, Tip::Crease, _) => Self::crease(class),
             // Both bounding edges keep a direction of their own at 1/2. With 2 faces they win over the sine mode by a Jordan
             // block; with 3 and more it grows faster than they do, and there is no tangent plane.
@@ -90,9 +92,9 @@ impl Modes {
                     weights[0] = -1.0;
                     weights
                 };
-                Self { lambda: 0.5, tangents: Some([end(0), end(2)]) }
+                Self { lambda: 0.5, tangents: Some([end(0), end(2)]), spare: None }
             }
-            (false, _, _) => Self { lambda: eigenvalue(PI / faces).max(0.5), tangents: None },
+            (false, _, _) => Self { lambda: eigenvalue(PI / faces).max(0.5), tangents: None, spare: None },
         }
     }
 
@@ -113,6 +115,12 @@ impl Modes {
         };
         let along = ends(1.0, -1.0);
         let angle = PI / f64::from(class.faces);
+        // Where the boundary of a single face runs straight through the vertex, the face's far corner gives the plane.
+        let spare = (faces == 1).then(|| {
+            let mut weights = ring(class, |_| 0.0, |_| 1.0);
+            weights[0] = -1.0;
+            weights
+        });
         let tangents = match faces {
             // Directions across decay like n / 4^n along the second difference of the boundary curve (a Jordan block):
             // the tangent plane is the curve's osculating plane.
@@ -128,7 +136,7 @@ impl Modes {
             // another limit: such a sector has no tangent plane, and what is given is the limit inside.
             _ => [sine(class, 2), sine(class, 1)],
         };
-        Self { lambda: eigenvalue(angle).max(0.5), tangents: Some(tangents) }
+        Self { lambda: eigenvalue(angle).max(0.5), tangents: Some(tangents), spare }
     }
 
     /// A dart: the mode that is odd about its sharp edge is the smooth one, the even one has an angle of its own.
@@ -136,7 +144,7 @@ impl Modes {
         let angle = TAU / f64::from(class.faces);
         let odd = mode(class, angle, |i| ((i as f64 - sharp as f64) * angle).sin());
         let (lambda, even) = even_dart(class, sharp);
-        Self { lambda: eigenvalue(angle).max(lambda), tangents: Some([even, odd]) }
+        Self { lambda: eigenvalue(angle).max(lambda), tangents: Some([even, odd]), spare: None }
     }
 }
 
