@@ -4,12 +4,7 @@ mod common;
 
 use catoptric::patch::PatchKind;
 use catoptric::stam::LimitSurface;
-use common::{angle_deg, meshes};
-
-/// Local parameters of the point `t` of an edge.
-fn on_edge(edge: u8, t: f64) -> [f64; 2] {
-    [[t, 0.0], [1.0, t], [1.0 - t, 1.0], [0.0, 1.0 - t]][usize::from(edge)]
-}
+use common::{Shared, angle_deg, meshes, on_edge, shared_points};
 
 /// Both sides of an edge are the same curve, with the same normal where no infinitely sharp edge lies between.
 #[test]
@@ -17,29 +12,17 @@ fn neighbours_meet_in_position_and_normal() {
     let (mut pieces, mut worst) = (0, 0.0f64);
     for mesh in meshes() {
         let surface = LimitSurface::new(&mesh).expect("it has a surface");
-        let adjacency = surface.adjacency();
-        for patch in 0..surface.patches().len() {
-            for edge in 0..4 {
-                for neighbour in adjacency.across(patch, edge) {
-                    let other = neighbour.patch as usize;
-                    for part in [0.1, 0.5, 0.83] {
-                        let t = neighbour.own[0] + part * (neighbour.own[1] - neighbour.own[0]);
-                        let here = on_edge(edge, t);
-                        let there = neighbour.carry(edge, here);
-                        let [a, b] = [surface.evaluate(patch, here), surface.evaluate(other, there)];
-                        let place = format!("{} patch {patch} edge {edge} t {t}", mesh.name);
-                        assert!(a.position.distance(b.position) < 1e-14 * surface.diagonal(), "{place}");
-                        // Near a vertex without a tangent plane normals need not agree along its spokes.
-                        let plain = |patch: usize| !matches!(surface.kind(patch), PatchKind::Corner);
-                        if !neighbour.sharp && plain(patch) && plain(other) {
-                            let turned = angle_deg(a.normal, b.normal);
-                            assert!(turned < 1e-7, "{place}: {turned:e} degrees");
-                            worst = worst.max(turned);
-                        }
-                        pieces += 1;
-                    }
-                }
+        for Shared { patch, edge, t, neighbour, here, there } in shared_points(&surface, &[0.1, 0.5, 0.83]) {
+            let place = format!("{} patch {patch} edge {edge} t {t}", mesh.name);
+            assert!(here.position.distance(there.position) < 1e-14 * surface.diagonal(), "{place}");
+            // Near a vertex without a tangent plane normals need not agree along its spokes.
+            let plain = |patch: usize| !matches!(surface.kind(patch), PatchKind::Corner);
+            if !neighbour.sharp && plain(patch) && plain(neighbour.patch as usize) {
+                let turned = angle_deg(here.normal, there.normal);
+                assert!(turned < 1e-7, "{place}: {turned:e} degrees");
+                worst = worst.max(turned);
             }
+            pieces += 1;
         }
     }
     println!("{pieces} points on shared edges; largest angle {worst:e} degrees");

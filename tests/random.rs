@@ -10,7 +10,7 @@ mod random_mesh;
 use catoptric::osd::{Answer, Far, MAX_ISOLATION, Reference};
 use catoptric::patch::PatchKind;
 use catoptric::stam::LimitSurface;
-use common::angle_deg;
+use common::{Shared, angle_deg, shared_points};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -117,36 +117,18 @@ fn opensubdiv_agrees_at_dyadic_points() {
 /// what is flatter is not compared.
 #[test]
 fn patches_meet() {
-    let on_edge = |edge: u8, t: f64| [[t, 0.0], [1.0, t], [1.0 - t, 1.0], [0.0, 1.0 - t]][usize::from(edge)];
     let figures = run(|seed, figures| {
         let surface =
             LimitSurface::new(&random_mesh::mesh(seed)).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
-        let adjacency = surface.adjacency();
-        for patch in 0..surface.patches().len() {
-            for edge in 0..4 {
-                for neighbour in adjacency.across(patch, edge) {
-                    let other = neighbour.patch as usize;
-                    for part in [0.13, 0.5, 0.91] {
-                        let t = neighbour.own[0] + part * (neighbour.own[1] - neighbour.own[0]);
-                        let here = on_edge(edge, t);
-                        let [a, b] =
-                            [surface.evaluate(patch, here), surface.evaluate(other, neighbour.carry(edge, here))];
-                        let kind = surface.kind(patch).name();
-                        let apart = a.position.distance(b.position) / surface.diagonal();
-                        note(figures, format!("meet, position, {kind}"), apart, seed);
-                        let condition = |j: &catoptric::stam::Jet| {
-                            j.du.cross(j.dv).length() / j.du.length_squared().max(j.dv.length_squared())
-                        };
-                        if !neighbour.sharp && condition(&a).min(condition(&b)) > 1e-4 {
-                            note(
-                                figures,
-                                format!("meet, normal in degrees, {kind}"),
-                                angle_deg(a.normal, b.normal),
-                                seed,
-                            );
-                        }
-                    }
-                }
+        for Shared { patch, neighbour, here, there, .. } in shared_points(&surface, &[0.13, 0.5, 0.91]) {
+            let kind = surface.kind(patch).name();
+            let apart = here.position.distance(there.position) / surface.diagonal();
+            note(figures, format!("meet, position, {kind}"), apart, seed);
+            let condition =
+                |j: &catoptric::stam::Jet| j.du.cross(j.dv).length() / j.du.length_squared().max(j.dv.length_squared());
+            if !neighbour.sharp && condition(&here).min(condition(&there)) > 1e-4 {
+                let turned = angle_deg(here.normal, there.normal);
+                note(figures, format!("meet, normal in degrees, {kind}"), turned, seed);
             }
         }
     });

@@ -2,6 +2,8 @@
 #![allow(dead_code, reason = "each test program uses its part")]
 
 use catoptric::mesh::{self, SubdivMesh};
+use catoptric::patch::Neighbour;
+use catoptric::stam::{Jet, LimitSurface};
 use glam::DVec3;
 use std::path::Path;
 
@@ -40,4 +42,37 @@ pub fn pillow() -> SubdivMesh {
         face_vertices: vec![0, 1, 2, 3, 3, 2, 1, 0],
         ..SubdivMesh::default()
     }
+}
+
+/// Local parameters of the point `t` of a patch's edge.
+pub fn on_edge(edge: u8, t: f64) -> [f64; 2] {
+    [[t, 0.0], [1.0, t], [1.0 - t, 1.0], [0.0, 1.0 - t]][usize::from(edge)]
+}
+
+/// A point on an edge between two patches, evaluated on both sides.
+pub struct Shared {
+    pub patch: usize,
+    pub edge: u8,
+    pub t: f64,
+    pub neighbour: Neighbour,
+    pub here: Jet,
+    pub there: Jet,
+}
+
+/// Points at `parts` of every piece of edge that two patches share.
+pub fn shared_points(surface: &LimitSurface, parts: &[f64]) -> Vec<Shared> {
+    let adjacency = surface.adjacency();
+    let mut points = Vec::new();
+    for (patch, edge) in (0..surface.patches().len()).flat_map(|patch| (0..4).map(move |edge| (patch, edge))) {
+        for &neighbour in adjacency.across(patch, edge) {
+            for part in parts {
+                let t = neighbour.own[0] + part * (neighbour.own[1] - neighbour.own[0]);
+                let own = on_edge(edge, t);
+                let here = surface.evaluate(patch, own);
+                let there = surface.evaluate(neighbour.patch as usize, neighbour.carry(edge, own));
+                points.push(Shared { patch, edge, t, neighbour, here, there });
+            }
+        }
+    }
+    points
 }

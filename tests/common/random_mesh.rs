@@ -163,7 +163,7 @@ fn crease_run(rng: &mut Rng, neighbours: &[BTreeSet<u32>], creases: &mut Vec<Cre
     for _ in 0..1 + rng.below(4) {
         let ways: Vec<u32> = neighbours[at as usize].iter().copied().filter(|v| !seen.contains(v)).collect();
         if ways.is_empty() {
-            return;
+            break;
         }
         let next = ways[rng.below(ways.len())];
         if !same {
