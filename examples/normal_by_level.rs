@@ -4,7 +4,7 @@
 //!
 //! A patch with an extraordinary vertex of valence N on a curved mesh is evaluated in the middle of each of the three
 //! windows of level n, from two f32 tables: *plain*, the points P(n) as Yasui & Kanai 2004 (eq. 8) store them, and
-//! *normalised*, Phat(n) = (P(n) - s0) / lambda^(n-1) (design.md 3.2). The reference is the normalised table in f64.
+//! *normalised*, Phat(n) = (P(n) - s0) / lambda^(n-1) (docs/LIMIT.md, section 4). The reference is the normalised table in f64.
 
 use catoptric::mesh::SubdivMesh;
 use catoptric::stam::{LimitSurface, Net, weights};

@@ -16,7 +16,7 @@ const POSITION: f64 = 2e-6;
 /// these classes, each product rounded twice by 2^-24, of points at most half a diagonal away: 6e-7; and the sum of the 16
 /// adds what it adds in every layout.
 const BETWEEN_LAYOUTS: f64 = 1e-6;
-/// Normals in degrees at the 99.99th percentile (design.md 3.2): 1/100 pixel of reflection line is 1.4e-3. A derivative is
+/// Normals in degrees at the 99.99th percentile: 1/100 pixel of reflection line is 1.4e-3. A derivative is
 /// off by 20 x 6e-8 of the patch's size, so the bound holds where that is less than some 15 times the derivative.
 const NORMAL_DEGREES: f64 = 1e-3;
 /// Derivatives cancel: 20 roundings of the net's size, which is a few times the derivative's, and 2^-24 more for the power.

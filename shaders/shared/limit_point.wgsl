@@ -107,7 +107,7 @@ fn limit_point(record: vec4u, uv: vec2f) -> LimitPoint {
         du += vec3f(dot(x, b), dot(y, b), dot(z, b));
         dv += vec3f(dot(x, c), dot(y, c), dot(z, c));
     }
-    // The normal comes from the normalised derivatives, without any power of two (design.md 3.2).
+    // The normal comes from the normalised derivatives, without any power of two (docs/LIMIT.md, section 4).
     var normal = unit_or_zero(cross(unit_or_zero(du), unit_or_zero(dv)));
     if centre {
         position = vec3f(0.0);

@@ -1,4 +1,4 @@
-// What every pass over patches reads; the host side is src/gpu/records.rs and src/gpu/tables.rs.
+// What every pass over patches reads; the host side is src/gpu/records.rs and src/gpu/tables/.
 // Lengths are in units of Tables::unit, positions relative to the origin of their patch.
 //
 // Tables are textures TABLE_WIDTH texels wide, read by index. Software adapters gather texels of 8 invocations at once,

@@ -5,7 +5,7 @@
 //! sees; evaluate the exact limit there; shade with the light that the exact normal mirrors.
 //!
 //! # Changes
-//! Normalised tables ([`tables`], design.md 3.2) instead of plain points, patch-local f32 coordinates with matrices
+//! Normalised tables ([`tables`], docs/LIMIT.md, section 4) instead of plain points, patch-local f32 coordinates with matrices
 //! composed in f64, a crack-free proxy, and patterns filtered to the pixel.
 //!
 //! # Practice

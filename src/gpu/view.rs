@@ -139,7 +139,7 @@ impl View {
         })
     }
 
-    /// Every patch as this camera sees it, composed in f64, then rounded (design.md 4, "Projection"): clip-space x, y, w of
+    /// Every patch as this camera sees it, composed in f64, then rounded: clip-space x, y, w of
     /// its origin; the eye relative to its origin.
     pub(super) fn patch_views(&self, tables: &Tables) -> Vec<[[f32; 4]; 2]> {
         let axes = self.camera.axes();

@@ -102,7 +102,7 @@ impl Batch {
 /// Owner of a `Far::PatchTable` in double precision with Gregory end caps, and of its points.
 ///
 /// Exact on regular patches, and at dyadic points i/2^k, k <= isolation; end caps approximate elsewhere. The options
-/// are those of design.md 3.4: infinitely sharp patches on, legacy sharp corners and single-crease patches off.
+/// are not the defaults, which are drawing approximations: infinitely sharp patches on, legacy sharp corners and single-crease patches off.
 ///
 /// Evaluation borrows the table mutably: one evaluation at a time.
 /// ```compile_fail

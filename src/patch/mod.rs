@@ -4,7 +4,8 @@
 //! closed form: all four corners regular (boundaries and infinitely sharp edges included), or one extraordinary vertex
 //! whose rules no longer change and whose spokes are the only features of the other corners. Then a [`RingClass`] says
 //! everything about the patch but its points. Smooth extraordinary vertices, darts, crease and corner sectors all end
-//! at level 2 at the latest; only finite sharpness takes ceil(sharpness) levels.
+//! at level 2 at the latest. Along a semi-sharp crease of constant sharpness a face is a stack of strips; only where
+//! sharpness varies or creases meet does it take ceil(sharpness) levels.
 
 mod adjacency;
 mod fan;
@@ -152,7 +153,7 @@ pub enum Tip {
     Corner,
 }
 
-/// What all irregular patches with the same subdivision matrices share (design.md 3.1).
+/// What all irregular patches with the same subdivision matrices share (docs/LIMIT.md, section 2.2).
 ///
 /// The faces round the vertex are counted counter-clockwise; face i lies between spoke i and spoke i+1. A closed ring
 /// starts at the patch itself, an open sector at its first sharp or boundary edge.

@@ -231,7 +231,7 @@ impl Walk {
     }
 
     /// Whether the other three corners carry no feature except the spokes of the extraordinary vertex, so that the
-    /// class says everything (design.md 3.1).
+    /// class says everything (docs/LIMIT.md, section 2.2).
     fn stands_alone(&self, corner: usize) -> bool {
         let [ev, next, far, before] = std::array::from_fn(|i| &self.fans[(corner + i) % 4]);
         // `next` sees the spoke as the edge that comes in: its sector ends there, so the own face is the last one.

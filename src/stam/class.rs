@@ -1,4 +1,4 @@
-//! The matrices of a class of irregular patches: normalised Stam tables (design.md 3.2).
+//! The matrices of a class of irregular patches: normalised Stam tables (docs/LIMIT.md, section 4).
 //!
 //! # Theory
 //! Stam 1998 (as in Yasui & Kanai 2004, eq. 2 and 8): after n subdivisions the L-shaped rest of an irregular patch is
@@ -6,10 +6,11 @@
 //! step from them to the same points one level finer and A' the step to the 24 points of the three windows.
 //!
 //! # Changes
-//! No eigenvectors: powers of A do, so matrices without an eigenbasis (creases, boundaries) are no special case. And
-//! the points are kept *normalised*, Phat(n) = (P(n) - s0) / lambda^(n-1), so that they stay of the size of the control
-//! net and converge to the characteristic map; both are computed from the deflated matrix B = A - 1 l0, without which
-//! the constant part of A^n would swamp them after some 40 levels.
+//! No eigenvectors of A but those at the vertex itself ([`modes`](super::modes)): powers of A do, so matrices without an
+//! eigenbasis (creases, boundaries) are no special case. And the points are kept *normalised*, Phat(n) = (P(n) - s0) /
+//! lambda^(n-1), so that they stay of the size of the control net and converge to the characteristic map; both are
+//! computed from the deflated matrix B = A - 1 l0, without which the constant part of A^n would swamp them after some 40
+//! levels.
 //!
 //! # Practice
 //! [`ClassTable::new`] builds the matrices of one class; patches of the class share them.

@@ -13,7 +13,7 @@ pub enum Net {
     /// 16 uniform bicubic B-spline points, u fastest: point (i,j), i and j in -1..=2, at `4*(j+1) + (i+1)`; the corners
     /// of the patch are at 5, 6, 10, 9.
     Regular([DVec3; 16]),
-    /// Normalised Stam table, design.md 3.2.
+    /// Normalised Stam table, docs/LIMIT.md, section 4.
     Irregular {
         /// s0, the limit position of the extraordinary vertex at local (0,0).
         limit: DVec3,

@@ -11,7 +11,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 /// Positions relative to the patch in f32: some 20 roundings of 6e-8 of the patch's size. The normal budget is that of
-/// design.md 3.2, held at the 99.99th percentile: 1/100 pixel of reflection line is 1.4e-3 degrees.
+/// reflection lines, held at the 99.99th percentile: 1/100 pixel of reflection line is 1.4e-3 degrees.
 const POSITION: f64 = 2e-6;
 const NORMAL_DEG: f64 = 1e-3;
 

@@ -1,5 +1,5 @@
 //! Regression against OpenSubdiv: the exact limit, on CPU and GPU, compared with evaluators that we did not write, tier
-//! by tier (design.md section 6).
+//! by tier.
 //!
 //! Every tier bins its samples by patch kind and names the worst one. Where the reference itself is known to be wrong,
 //! the samples are kept apart with the reason ([`KnownWrong`]) and held to what any wrong reference can be off.

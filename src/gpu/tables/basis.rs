@@ -7,7 +7,7 @@
 //! of the table itself and a matrix that patches of the class share.
 //!
 //! # Changes
-//! design.md 3.2 stores the K control points, Phat = M C, whose products cancel: entries of M have both signs and sum to
+//! The obvious compact form stores the K control points, Phat = M C, whose products cancel: entries of M have both signs and sum to
 //! zero. Here the rows are picked by pivoting, so that U has small entries (absolute values that sum to 3 to 10 in a row up
 //! to valence 12) and normals are as exact as those of the expanded table. And r is below K: 17 of 18 points for
 //! valence 5, 25 of 30 for valence 11 without the first four levels, for modes that have decayed below f32's rounding are

@@ -1,4 +1,4 @@
-//! The three layouts of design.md 3.2 and what they take.
+//! The three layouts of the tables, and what they take.
 
 use super::basis::Basis;
 use super::{PatchSource, TABLE_LEVELS};
@@ -11,7 +11,7 @@ use std::str::FromStr;
 
 /// Memory that tables may take before [`TableLayout::Auto`] prefers the smallest layout to the fastest: half of the
 /// smallest adapter that professional programs still ask for (2 GiB), which leaves as much for pictures; a software
-/// adapter takes it from the machine, where a million creased faces should fit in 6 GiB (design.md 8, "scale").
+/// adapter takes it from the machine, where a million creased faces should fit in 6 GiB.
 pub const BUDGET: u64 = 1 << 30;
 
 /// What is not worth saving: below it the fastest layout is taken. (Measured on lavapipe, built-in sample at 2048^2 samples:

@@ -1,7 +1,7 @@
 //! Patches as f32 tables: positions relative to a per-patch origin that stays on the CPU in f64.
 //!
 //! # Theory
-//! design.md 3.2: normalised Stam tables. A regular patch is 16 points; an irregular one 24 levels of 24 points (the
+//! Normalised Stam tables (docs/LIMIT.md, section 4). A regular patch is 16 points; an irregular one 24 levels of 24 points (the
 //! three windows of a level overlap), its origin s0 and the powers of lambda, shared by all patches with that lambda.
 //!
 //! # Changes

@@ -1,4 +1,4 @@
-//! Sharpness: how it decays, and which rule it asks for (Hoffman 2010; design.md 3.4).
+//! Sharpness: how it decays, and which rule it asks for (docs/LIMIT.md, section 1).
 //!
 //! Sharpness is f32 because OpenSubdiv's is: the fraction that is left at the last level is a weight of the geometry, and
 //! Chaikin's averages round.
