@@ -27,8 +27,8 @@ pub(super) struct RenderArgs {
     /// Shape of the lights: stripes, lattice, circles, or a picture
     #[arg(long, value_name = "stripes|lattice|circles|FILE.png", default_value = "stripes")]
     pattern: String,
-    /// Exact limit at every pixel, or interpolated from the proxy's vertices
-    #[arg(long, value_enum, default_value = "limit")]
+    /// How position and normal come to a pixel
+    #[arg(long, value_enum, default_value = "exact")]
     pipeline: PipelineName,
     /// How the tables of irregular patches are stored: auto, expanded, compact or hybrid
     #[arg(long = "tables", value_name = "LAYOUT", default_value_t)]
@@ -82,7 +82,11 @@ enum FieldName {
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum PipelineName {
+    /// The limit surface where each pixel's ray meets it
+    Exact,
+    /// The limit surface at the parameters of a rasterised proxy
     Limit,
+    /// Interpolated from the proxy's vertices
     Polygon,
 }
 
@@ -196,6 +200,7 @@ fn view(args: &RenderArgs, scout: &Scout, pattern: Pattern) -> Result<View, Fail
     view.proxy_level = args.proxy_level;
     view.samples = args.samples;
     view.pipeline = match args.pipeline {
+        PipelineName::Exact => Pipeline::Exact,
         PipelineName::Limit => Pipeline::Limit,
         PipelineName::Polygon => Pipeline::Polygon,
     };

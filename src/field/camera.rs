@@ -85,6 +85,11 @@ impl Camera {
         Axes { right, up: right.cross(forward), forward, scale: [scale_y / aspect, scale_y] }
     }
 
+    /// Whether lines of sight meet in the eye.
+    pub fn is_perspective(&self) -> bool {
+        true
+    }
+
     /// Distance of the near plane for an object inside `bounds`: half the way to the nearest corner, and at least a
     /// ten-millionth of the box where the eye is inside it. The depth buffer is reversed and infinite (near/distance in
     /// f32), so its relative resolution is the same everywhere and no far plane is needed.

@@ -14,6 +14,8 @@
 //! `limit_point` in WGSL.
 
 mod blocks;
+mod certificate;
+mod charts;
 mod device;
 mod frame;
 mod passes;
@@ -23,9 +25,10 @@ pub mod shader;
 pub mod tables;
 mod view;
 
+pub use certificate::{Certificate, State, Summary};
 pub use device::AdapterChoice;
 pub use frame::{Frame, NO_PATCH, SurfaceImage, Timings};
-pub use tables::{PatchNet, PatchSource, TableLayout, Tables};
+pub use tables::{PatchSource, TableLayout, Tables};
 pub use view::{MAX_PROXY_LEVEL, MAX_SAMPLES, Palette, Pipeline, View};
 
 use crate::stam::{Jet, LimitSurface};
@@ -162,7 +165,7 @@ impl Gpu {
     ///
     /// # Errors
     /// As [`Gpu::upload`].
-    pub fn upload_patches(&self, source: &(impl PatchSource + ?Sized)) -> Result<Tables, GpuError> {
+    pub fn upload_patches(&self, source: &impl PatchSource) -> Result<Tables, GpuError> {
         tables::upload(&self.device, source, TableLayout::Auto)
     }
 

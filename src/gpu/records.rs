@@ -26,6 +26,30 @@ pub struct DrawRecord {
     pub padding: [u32; 2],
 }
 
+/// A sample solved on the host, as vertex attributes 0 to 3 of shaders/specks.wgsl.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable, PartialEq)]
+pub struct SpeckRecord {
+    /// Centre of the sample in normalised device coordinates.
+    pub place: [f32; 2],
+    /// Patch + 1.
+    pub patch_id: u32,
+    /// Patch-local parameters.
+    pub uv: [f32; 2],
+    /// Depth.
+    pub depth: f32,
+}
+
+/// `SightIn`, shaders/charts.wgsl.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct SightRecord {
+    /// 1 in perspective, else 0.
+    pub perspective: f32,
+    /// Zero.
+    pub padding: [f32; 3],
+}
+
 /// `Resolve`, shaders/resolve.wgsl.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]

@@ -1,6 +1,7 @@
 //! WGSL sources: which files make up a pass, and the constants that Rust shares with them.
 
 use super::NO_PATCH;
+use super::charts::BAND;
 use super::tables::TABLE_LEVELS;
 use crate::stam::LEVELS;
 
@@ -27,6 +28,22 @@ pub const TABLE_WIDTH: u32 = 4096;
 pub const BLOCK_ROWS: u32 = 8192;
 /// Texels of one level of an irregular patch: 9 rows of 4 points, x, y and z each.
 pub const LEVEL_TEXELS: u32 = 27;
+/// Texels of a chart.
+pub const CHART_TEXELS: u32 = 16;
+/// Samples a side of the tiles that have lists of charts.
+pub const CHART_TILE: u32 = 16;
+/// How a sample came to its point: not at all.
+pub const STATE_NONE: u32 = 0;
+/// Solved on the host.
+pub const STATE_SOLVED: u32 = 1;
+/// By Newton's method on a chart.
+pub const STATE_CHART: u32 = 2;
+/// Added where the method did not converge on a chart that may lie before what was found.
+pub const STATE_DOUBTFUL: u32 = 4;
+/// Samples by which Newton's last step may move: its error is the square of that over the size of the chart.
+const SETTLED: f32 = 0.02;
+/// Newton's steps at most; the error halves each time at least.
+const MOST_STEPS: u32 = 24;
 /// Distance in pixels by which the borders of proxy patches overlap: large against the rasteriser's grid of 1/256 pixel
 /// on which vertices that differ by rounding may land one step apart, small against a pixel. (Measured: in 36 million
 /// pixels of a cube at level 7, 6 fall through without it, none with it.)
@@ -66,6 +83,7 @@ impl Module {
     }
 }
 
+const AT: &str = include_str!("../../shaders/shared/at.wgsl");
 const RECORDS: &str = include_str!("../../shaders/shared/records.wgsl");
 const TABLES: &str = include_str!("../../shaders/shared/tables.wgsl");
 const LIMIT_POINT: &str = include_str!("../../shaders/shared/limit_point.wgsl");
@@ -78,12 +96,13 @@ const REFLECTION: &str = include_str!("../../shaders/field/reflection.wgsl");
 /// Rasterises the proxy.
 pub const VISIBILITY: Module = Module {
     name: "visibility",
-    files: &[RECORDS, TABLES, LIMIT_POINT, include_str!("../../shaders/visibility.wgsl")],
+    files: &[AT, RECORDS, TABLES, LIMIT_POINT, include_str!("../../shaders/visibility.wgsl")],
 };
 /// Exact surface per pixel.
 pub const LIMIT: Module = Module {
     name: "limit",
     files: &[
+        AT,
         RECORDS,
         TABLES,
         LIMIT_POINT,
@@ -97,7 +116,7 @@ pub const LIMIT: Module = Module {
 /// Interpolated surface per pixel.
 pub const POLYGON: Module = Module {
     name: "polygon",
-    files: &[RECORDS, REFLECTION, OCTAHEDRAL, SURFACE, FULLSCREEN, include_str!("../../shaders/polygon.wgsl")],
+    files: &[AT, RECORDS, REFLECTION, OCTAHEDRAL, SURFACE, FULLSCREEN, include_str!("../../shaders/polygon.wgsl")],
 };
 /// Colour.
 pub const SHADE: Module = Module {
@@ -108,11 +127,19 @@ pub const SHADE: Module = Module {
 pub const RESOLVE: Module =
     Module { name: "resolve", files: &[FULLSCREEN, include_str!("../../shaders/resolve.wgsl")] };
 /// Limit at samples.
-pub const EVALUATE: Module =
-    Module { name: "evaluate", files: &[RECORDS, TABLES, LIMIT_POINT, include_str!("../../shaders/evaluate.wgsl")] };
+pub const EVALUATE: Module = Module {
+    name: "evaluate",
+    files: &[AT, RECORDS, TABLES, LIMIT_POINT, include_str!("../../shaders/evaluate.wgsl")],
+};
+
+/// Samples solved on the host.
+pub const SPECKS: Module = Module { name: "specks", files: &[include_str!("../../shaders/specks.wgsl")] };
+/// What each sample sees first.
+pub const CHARTS: Module =
+    Module { name: "charts", files: &[AT, FULLSCREEN, include_str!("../../shaders/charts.wgsl")] };
 
 /// All modules.
-pub const MODULES: [Module; 6] = [VISIBILITY, LIMIT, POLYGON, SHADE, RESOLVE, EVALUATE];
+pub const MODULES: [Module; 8] = [SPECKS, CHARTS, VISIBILITY, LIMIT, POLYGON, SHADE, RESOLVE, EVALUATE];
 
 /// WGSL declarations of the constants above.
 fn constants(variant: &Variant) -> String {
@@ -129,8 +156,15 @@ fn constants(variant: &Variant) -> String {
         ("LEVEL_TEXELS", LEVEL_TEXELS),
         ("CENTRE_LEVEL", LEVELS as u32),
         ("NO_PATCH", NO_PATCH),
+        ("CHART_TEXELS", CHART_TEXELS),
+        ("CHART_TILE", CHART_TILE),
+        ("STATE_SOLVED", STATE_SOLVED),
+        ("STATE_CHART", STATE_CHART),
+        ("STATE_DOUBTFUL", STATE_DOUBTFUL),
+        ("MOST_STEPS", MOST_STEPS),
     ];
     let mut text: String = counts.iter().map(|(name, value)| format!("const {name} = {value}u;\n")).collect();
-    text.push_str(&format!("const PUSH = {PUSH:?};\nconst HAS_TAIL = {};\n", variant.has_tail));
+    text.push_str(&format!("const PUSH = {PUSH:?};\nconst SETTLED = {SETTLED:?};\nconst BAND = {BAND:?};\n"));
+    text.push_str(&format!("const HAS_TAIL = {};\n", variant.has_tail));
     text
 }

@@ -17,8 +17,10 @@ const MAX_SIZE: u32 = 32_768;
 /// How position and normal come to a pixel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Pipeline {
-    /// Evaluated on the limit surface at the pixel's (patch, u, v).
+    /// Evaluated on the limit surface where each sample's ray meets it first; nothing depends on a proxy.
     #[default]
+    Exact,
+    /// Evaluated on the limit surface at the pixel's (patch, u, v) that the rasterised proxy gives.
     Limit,
     /// Interpolated from the proxy's vertices, which have limit positions and normals (Yasui & Kanai 2004, fig. 7b).
     Polygon,
@@ -60,7 +62,7 @@ pub struct View {
     pub pattern: Pattern,
     /// How position and normal come to a pixel.
     pub pipeline: Pipeline,
-    /// Level of the proxy tessellation, 0 to [`MAX_PROXY_LEVEL`]: 2^level parts a quad
+    /// Level of the proxy tessellation, in the exact pipeline the least one of its charts, 0 to [`MAX_PROXY_LEVEL`]: 2^level parts a quad
     /// face. `None`: as fine as the picture
     /// asks for ([`View::proxy_level_for`]).
     pub proxy_level: Option<u32>,
@@ -77,7 +79,7 @@ impl View {
             camera,
             field: Field::Reflection(light),
             pattern: Pattern::Stripes { width: 0.42 },
-            pipeline: Pipeline::Limit,
+            pipeline: Pipeline::default(),
             proxy_level: None,
             samples: 2,
             palette: Palette::default(),

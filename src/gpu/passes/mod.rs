@@ -1,5 +1,6 @@
 //! The passes: `NAME.rs` here runs `shaders/NAME.wgsl`.
 
+pub mod charts;
 pub mod evaluate;
 pub mod limit;
 pub mod resolve;
@@ -19,6 +20,8 @@ use wgpu::{BufferUsages, TextureFormat, TextureUsages};
 pub struct Passes {
     /// Whether they read tables with levels given by picked points.
     has_tail: bool,
+    specks: OnceLock<wgpu::RenderPipeline>,
+    charts: OnceLock<wgpu::RenderPipeline>,
     visibility: OnceLock<wgpu::RenderPipeline>,
     visibility_polygon: OnceLock<wgpu::RenderPipeline>,
     limit: OnceLock<wgpu::RenderPipeline>,
@@ -46,7 +49,10 @@ impl Passes {
     /// Compiles what a picture needs, in parallel.
     pub(super) fn prepare(&self, device: &Device, pipeline: Pipeline) {
         rayon::join(
-            || visibility::pipeline(self, device, pipeline),
+            || match pipeline {
+                Pipeline::Exact => charts::pipeline(self, device),
+                _ => visibility::pipeline(self, device, pipeline),
+            },
             || {
                 limit::pipeline(self, device, pipeline);
                 shade::pipeline(self, device);
@@ -98,6 +104,8 @@ pub(super) struct Visible {
     pub uv: wgpu::Texture,
     /// Above 0 where there is surface: the mask of the passes that follow.
     depth: wgpu::Texture,
+    /// How the exact pipeline came to each point.
+    pub certificate: Option<wgpu::Texture>,
     /// Position and normal of the proxy, for the polygon pipeline.
     proxy: Option<[wgpu::Texture; 2]>,
 }
@@ -119,6 +127,7 @@ pub(super) struct PictureTargets {
 }
 
 const PATCH_FORMAT: TextureFormat = TextureFormat::R32Uint;
+const CERTIFICATE_FORMAT: TextureFormat = TextureFormat::R32Uint;
 const UV_FORMAT: TextureFormat = TextureFormat::Rg32Float;
 const DEPTH_FORMAT: TextureFormat = TextureFormat::Depth32Float;
 const SURFACE_FORMAT: TextureFormat = TextureFormat::Rgba32Float;
@@ -146,6 +155,7 @@ impl Visible {
             patch: texture(PATCH_FORMAT),
             uv: texture(UV_FORMAT),
             depth: texture(DEPTH_FORMAT),
+            certificate: (pipeline == Pipeline::Exact).then(|| texture(CERTIFICATE_FORMAT)),
             proxy: (pipeline == Pipeline::Polygon).then(|| [SURFACE_FORMAT; 2].map(texture)),
         }
     }
