@@ -41,7 +41,7 @@ use rayon::prelude::*;
 
 /// Distance in samples within which the border of a piece is taken for its inside, so that neighbours leave no gap: a
 /// hundred times what f32 rounds in a chart, a fifth of the 0.01 pixel within which silhouettes are to be right.
-pub(super) const BAND: f64 = 0.002;
+pub(super) const BAND: f64 = 2e-4;
 
 /// q up to which a piece is a chart: Newton's error shrinks to a half at least each step, in practice quadratically.
 const MAX_DISTORTION: f64 = 0.2;
