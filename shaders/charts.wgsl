@@ -1,48 +1,90 @@
-// The point of the limit surface that each sample sees first: Newton's method on the charts that may cover it, nearest
-// first. Host side: passes/charts.rs; what a chart is, and why the method must converge: src/gpu/charts/mod.rs.
+// The point of the limit surface that each sample sees first: Newton's method on every chart that may cover it; the depth
+// buffer keeps the nearest. Host side: passes/charts.rs; what a chart is, and why the method must converge:
+// src/gpu/charts/mod.rs.
 
-// CHART_TEXELS a chart. 0: centre (samples), depth that nothing of it is nearer than, depth in the middle. 1: inverse of the
-// linear map, row by row. 2: (u,v) that it gives the centre; half the side of the square round (1/2,1/2) where it sees all
-// that the chart covers; patch. 3: origin and size in the patch. 4..15: rows of v of Bezier points: x, y, depth, where x and y
-// are samples from the centre times weight, and depth and weight are relative to those in the middle.
-@group(0) @binding(0) var charts: texture_2d<u32>;
-// First and end of the list of every tile of CHART_TILE samples.
-@group(0) @binding(1) var tiles: texture_2d<u32>;
-@group(0) @binding(2) var list: texture_2d<u32>;
-// What has been solved already: patch + 1, u, v, depth.
-@group(0) @binding(3) var specks: texture_2d<u32>;
-@group(0) @binding(4) var<uniform> sight_in: SightIn;
-
-struct SightIn {
-    // 1 in perspective: weight is depth; else 0: weight is 1.
-    perspective: f32,
-    padding0: f32,
-    padding1: f32,
-    padding2: f32,
+// A chart, the same for all its fragments. id: patch + 1; x, y (samples) and depth of its middle, as bits. inverse: of the
+// linear map from (u,v) to samples, row by row. start: (u,v) that it gives the middle; half the side of the square round
+// (1/2,1/2) where it sees all that the chart covers. place: origin and size in the patch. x0 .. z3: rows of v of Bezier points,
+// x and y in samples from the middle, times weight, and depth. Weight and depth are parts of those of the middle, less one
+// (perspective); or the weight is one, and the depth is less that of the middle.
+struct Corner {
+    @builtin(position) clip: vec4f,
+    @location(0) @interpolate(flat, either) id: vec4u,
+    @location(1) @interpolate(flat, either) inverse: vec4f,
+    @location(2) @interpolate(flat, either) start: vec4f,
+    @location(3) @interpolate(flat, either) place: vec4f,
+    @location(4) @interpolate(flat, either) x0: vec4f,
+    @location(5) @interpolate(flat, either) y0: vec4f,
+    @location(6) @interpolate(flat, either) z0: vec4f,
+    @location(7) @interpolate(flat, either) x1: vec4f,
+    @location(8) @interpolate(flat, either) y1: vec4f,
+    @location(9) @interpolate(flat, either) z1: vec4f,
+    @location(10) @interpolate(flat, either) x2: vec4f,
+    @location(11) @interpolate(flat, either) y2: vec4f,
+    @location(12) @interpolate(flat, either) z2: vec4f,
+    @location(13) @interpolate(flat, either) x3: vec4f,
+    @location(14) @interpolate(flat, either) y3: vec4f,
+    @location(15) @interpolate(flat, either) z3: vec4f,
 }
 
 struct Found {
-    // Patch id + 1: 0 is the background.
+    // Patch + 1: 0 is the background.
     @location(0) patch_id: u32,
     @location(1) uv: vec2f,
     // Bits 0 to 15: distance in samples between the point and the sample's ray, as f16. Then 8 bits: steps. Then: state.
     @location(2) certificate: u32,
-    // The mask of the passes that follow.
-    @builtin(frag_depth) mask: f32,
+    @builtin(frag_depth) depth: f32,
 }
 
-struct Net {
-    rows: array<mat3x4f, 4>,
+struct Lens {
+    // Samples.
+    size: vec2f,
+    // 1 in perspective, else 0.
+    perspective: f32,
+    // Depth that the depth buffer shows as 1.
+    near: f32,
+    // Orthographic: depth that it shows as 0, and its scale.
+    far: f32,
+    scale: f32,
+    padding: vec2f,
 }
 
-struct ChartPoint {
-    value: vec3f,
-    du: vec3f,
-    dv: vec3f,
+@group(0) @binding(0) var<uniform> lens: Lens;
+// CHART_TEXELS a chart, as in Corner. (Instances cost software adapters microseconds each, and charts are many and small.)
+@group(0) @binding(1) var charts: texture_2d<u32>;
+
+fn texel(index: u32) -> vec4u {
+    return textureLoad(charts, vec2u(index % TABLE_WIDTH, index / TABLE_WIDTH), 0);
 }
 
-fn chart_texel(index: u32) -> vec4f {
-    return bitcast<vec4f>(textureLoad(charts, at(index), 0));
+// The parallelogram that the linear map makes of the square.
+@vertex
+fn corner(@builtin(vertex_index) i: u32) -> Corner {
+    let first = (i >> 2u) * CHART_TEXELS;
+    var c: Corner;
+    c.id = texel(first);
+    c.inverse = bitcast<vec4f>(texel(first + 1u));
+    c.start = bitcast<vec4f>(texel(first + 2u));
+    c.place = bitcast<vec4f>(texel(first + 3u));
+    c.x0 = bitcast<vec4f>(texel(first + 4u));
+    c.y0 = bitcast<vec4f>(texel(first + 5u));
+    c.z0 = bitcast<vec4f>(texel(first + 6u));
+    c.x1 = bitcast<vec4f>(texel(first + 7u));
+    c.y1 = bitcast<vec4f>(texel(first + 8u));
+    c.z1 = bitcast<vec4f>(texel(first + 9u));
+    c.x2 = bitcast<vec4f>(texel(first + 10u));
+    c.y2 = bitcast<vec4f>(texel(first + 11u));
+    c.z2 = bitcast<vec4f>(texel(first + 12u));
+    c.x3 = bitcast<vec4f>(texel(first + 13u));
+    c.y3 = bitcast<vec4f>(texel(first + 14u));
+    c.z3 = bitcast<vec4f>(texel(first + 15u));
+    let side = vec2f(f32(i & 1u), f32((i >> 1u) & 1u)) * 2.0 - 1.0;
+    let t = 0.5 + side * c.start.z - c.start.xy;
+    let m = c.inverse;
+    let d = vec2f(m.w * t.x - m.y * t.y, m.x * t.y - m.z * t.x) / (m.x * m.w - m.y * m.z);
+    let ndc = (bitcast<vec2f>(c.id.yz) + d) / lens.size * 2.0 - 1.0;
+    c.clip = vec4f(ndc.x, -ndc.y, 0.5, 1.0);
+    return c;
 }
 
 fn bernstein(t: f32) -> vec4f {
@@ -55,118 +97,56 @@ fn bernstein_derivative(t: f32) -> vec4f {
     return vec4f(-3.0 * s * s, 3.0 * s * (s - 2.0 * t), 3.0 * t * (2.0 * s - t), 3.0 * t * t);
 }
 
-// x and y minus the sample's times weight: zero where it sees the point.
-fn miss(value: vec3f, d: vec2f) -> vec2f {
-    return value.xy - d * mix(1.0, value.z, sight_in.perspective);
-}
-
 @fragment
-fn visible(@builtin(position) position: vec4f) -> Found {
-    let sample = vec2u(position.xy);
-    let speck = textureLoad(specks, sample, 0);
-    var patch_id = speck.x;
-    var uv = bitcast<vec2f>(speck.yz);
-    var depth = select(3.0e38, bitcast<f32>(speck.w), patch_id > 0u);
-    var certificate = select(0u, STATE_SOLVED << 24u, patch_id > 0u);
-
-    let range = textureLoad(tiles, sample / CHART_TILE, 0).xy;
-    var k = range.x;
-    var doubt = 0u;
+fn visible(c: Corner) -> Found {
+    let d = c.clip.xy - bitcast<vec2f>(c.id.yz);
+    let m = c.inverse;
+    var t = clamp(c.start.xy + vec2f(dot(m.xy, d), dot(m.zw, d)), vec2f(0.0), vec2f(1.0));
+    var steps = 0u;
+    var moved = 0.0;
+    var beyond = 0.0;
     loop {
-        // The next chart that may cover the sample. Charts are looked for in a loop of their own because software adapters compute
-        // whatever stands in a branch or before a break for samples that do not need it.
-        var chart = 0u;
-        var start = vec2f(0.0);
-        var d = vec2f(0.0);
-        var covers = false;
-        loop {
-            if k >= range.y {
-                break;
-            }
-            chart = CHART_TEXELS * textureLoad(list, at(k), 0).x;
-            let c = chart_texel(chart);
-            let inverse = chart_texel(chart + 1u);
-            let s = chart_texel(chart + 2u);
-            if c.z >= depth {
-                k = range.y;
-                break;
-            }
-            k++;
-            d = position.xy - c.xy;
-            start = s.xy + vec2f(dot(inverse.xy, d), dot(inverse.zw, d));
-            covers = max(abs(start.x - 0.5), abs(start.y - 0.5)) <= s.z;
-            if covers {
-                break;
-            }
-        }
-        if !covers {
+        let bu = bernstein(t.x);
+        let bv = bernstein(t.y);
+        let cu = bernstein_derivative(t.x);
+        let cv = bernstein_derivative(t.y);
+        // x and y minus the sample's times weight: zero where it sees the point.
+        let w = d * lens.perspective;
+        let lx = vec4f(dot(c.x0, bu), dot(c.x1, bu), dot(c.x2, bu), dot(c.x3, bu));
+        let ly = vec4f(dot(c.y0, bu), dot(c.y1, bu), dot(c.y2, bu), dot(c.y3, bu));
+        let lz = vec4f(dot(c.z0, bu), dot(c.z1, bu), dot(c.z2, bu), dot(c.z3, bu));
+        let g = vec2f(dot(lx, bv), dot(ly, bv)) - d - w * dot(lz, bv);
+        let b = vec2f(dot(lx, cv), dot(ly, cv)) - w * dot(lz, cv);
+        let sx = vec4f(dot(c.x0, cu), dot(c.x1, cu), dot(c.x2, cu), dot(c.x3, cu));
+        let sy = vec4f(dot(c.y0, cu), dot(c.y1, cu), dot(c.y2, cu), dot(c.y3, cu));
+        let sz = vec4f(dot(c.z0, cu), dot(c.z1, cu), dot(c.z2, cu), dot(c.z3, cu));
+        let a = vec2f(dot(sx, bv), dot(sy, bv)) - w * dot(sz, bv);
+        let goal = t + vec2f(g.y * b.x - g.x * b.y, g.x * a.y - g.y * a.x) / (a.x * b.y - a.y * b.x);
+        let next = clamp(goal, vec2f(0.0), vec2f(1.0));
+        moved = length(a * (next.x - t.x) + b * (next.y - t.y));
+        beyond = length(a * (goal.x - next.x) + b * (goal.y - next.y));
+        t = next;
+        steps++;
+        if !(moved >= SETTLED && steps < MOST_STEPS) {
             break;
         }
-        var x: array<vec4f, 4>;
-        var y: array<vec4f, 4>;
-        var z: array<vec4f, 4>;
-        for (var j = 0u; j < 4u; j++) {
-            x[j] = chart_texel(chart + 4u + 3u * j);
-            y[j] = chart_texel(chart + 5u + 3u * j);
-            z[j] = chart_texel(chart + 6u + 3u * j);
-        }
-        var t = clamp(start, vec2f(0.0), vec2f(1.0));
-        var steps = 0u;
-        var moved = 0.0;
-        var beyond = 0.0;
-        var value = vec3f(0.0);
-        loop {
-            let bu = bernstein(t.x);
-            let bv = bernstein(t.y);
-            let cu = bernstein_derivative(t.x);
-            let cv = bernstein_derivative(t.y);
-            value = vec3f(0.0);
-            var du = vec3f(0.0);
-            var dv = vec3f(0.0);
-            for (var j = 0u; j < 4u; j++) {
-                let line = vec3f(dot(x[j], bu), dot(y[j], bu), dot(z[j], bu));
-                value += line * bv[j];
-                du += vec3f(dot(x[j], cu), dot(y[j], cu), dot(z[j], cu)) * bv[j];
-                dv += line * cv[j];
-            }
-            let g = miss(value, d);
-            let a = du.xy - d * (du.z * sight_in.perspective);
-            let b = dv.xy - d * (dv.z * sight_in.perspective);
-            let step = vec2f(g.y * b.x - g.x * b.y, g.x * a.y - g.y * a.x) / (a.x * b.y - a.y * b.x);
-            let goal = t + step;
-            let next = clamp(goal, vec2f(0.0), vec2f(1.0));
-            moved = length(a * (next.x - t.x) + b * (next.y - t.y));
-            beyond = length(a * (goal.x - next.x) + b * (goal.y - next.y));
-            value += du * (next.x - t.x) + dv * (next.y - t.y);
-            t = next;
-            steps++;
-            if !(moved >= SETTLED && steps < MOST_STEPS) {
-                break;
-            }
-        }
-        let weight = mix(1.0, value.z, sight_in.perspective);
-        let own = mix(value.z + chart_texel(chart).w, value.z * chart_texel(chart).w, sight_in.perspective);
-        let converged = moved < SETTLED;
-        if !converged {
-            doubt = STATE_DOUBTFUL;
-        }
-        if converged && beyond <= BAND * weight && own < depth {
-            let place = chart_texel(chart + 3u);
-            patch_id = bitcast<u32>(chart_texel(chart + 2u).w) + 1u;
-            depth = own;
-            uv = place.xy + place.zw * t;
-            // What the sample sees of the point at the (u,v) that is handed on, with its rounding.
-            let r = (uv - place.xy) / place.zw;
-            let bu = bernstein(r.x);
-            let bv = bernstein(r.y);
-            var point = vec3f(0.0);
-            for (var j = 0u; j < 4u; j++) {
-                point += vec3f(dot(x[j], bu), dot(y[j], bu), dot(z[j], bu)) * bv[j];
-            }
-            let residual = length(miss(point, d)) / weight;
-            certificate = pack2x16float(vec2f(residual, 0.0)) | (steps << 16u) | (STATE_CHART << 24u);
-        }
     }
-    certificate |= doubt << 24u;
-    return Found(patch_id, uv, certificate, select(0.0, 0.5, patch_id > 0u));
+    // What the sample sees of the point at the (u,v) that is handed on, with its rounding.
+    let uv = c.place.xy + c.place.zw * t;
+    let r = (uv - c.place.xy) / c.place.zw;
+    let bu = bernstein(r.x);
+    let bv = bernstein(r.y);
+    let x = dot(vec4f(dot(c.x0, bu), dot(c.x1, bu), dot(c.x2, bu), dot(c.x3, bu)), bv);
+    let y = dot(vec4f(dot(c.y0, bu), dot(c.y1, bu), dot(c.y2, bu), dot(c.y3, bu)), bv);
+    let z = dot(vec4f(dot(c.z0, bu), dot(c.z1, bu), dot(c.z2, bu), dot(c.z3, bu)), bv);
+    let weight = 1.0 + z * lens.perspective;
+    let residual = length(vec2f(x, y) - d * weight) / weight;
+    let middle = bitcast<f32>(c.id.w);
+    let depth = select((lens.far - middle - z) * lens.scale, lens.near / (middle + middle * z), lens.perspective > 0.0);
+    let converged = moved < SETTLED;
+    if converged && beyond > BAND * weight {
+        discard;
+    }
+    let state = select(STATE_DOUBTFUL, STATE_CHART, converged);
+    return Found(c.id.x, uv, pack2x16float(vec2f(residual, 0.0)) | (steps << 16u) | (state << 24u), depth);
 }

@@ -2,16 +2,23 @@
 
 struct Speck {
     @builtin(position) clip: vec4f,
-    @location(0) @interpolate(flat, either) found: vec4u,
+    @location(0) @interpolate(flat, either) patch_id: u32,
+    @location(1) @interpolate(flat, either) uv: vec2f,
 }
 
-// place: centre of the sample in normalised device coordinates.
+struct Found {
+    @location(0) patch_id: u32,
+    @location(1) uv: vec2f,
+    @location(2) certificate: u32,
+}
+
+// place: centre of the sample in normalised device coordinates, and depth.
 @vertex
-fn vertex(@location(0) place: vec2f, @location(1) patch_id: u32, @location(2) uv: vec2f, @location(3) depth: f32) -> Speck {
-    return Speck(vec4f(place, 0.5, 1.0), vec4u(patch_id, bitcast<vec2u>(uv), bitcast<u32>(depth)));
+fn speck(@location(0) place: vec3f, @location(1) patch_id: u32, @location(2) uv: vec2f) -> Speck {
+    return Speck(vec4f(place, 1.0), patch_id, uv);
 }
 
 @fragment
-fn speck(v: Speck) -> @location(0) vec4u {
-    return v.found;
+fn solved(v: Speck) -> Found {
+    return Found(v.patch_id, v.uv, STATE_SOLVED << 24u);
 }

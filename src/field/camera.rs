@@ -100,6 +100,12 @@ impl Camera {
         (nearest * 0.5).max(diagonal * 1e-7)
     }
 
+    /// Depth of the farthest corner of `bounds` along the line of sight.
+    pub fn far(&self, bounds: [DVec3; 2]) -> f64 {
+        let forward = self.axes().forward;
+        corners(bounds).map(|c| (c - self.eye).dot(forward)).into_iter().fold(f64::NEG_INFINITY, f64::max)
+    }
+
     /// Unit direction of the ray through pixel coordinates (x right, y down; the first pixel's centre is at 0.5, 0.5).
     pub fn pixel_ray(&self, x: f64, y: f64) -> DVec3 {
         let axes = self.axes();

@@ -36,29 +36,6 @@ impl Device {
         writer.finish()
     }
 
-    /// A texture of `size` texels.
-    pub fn texture<T: bytemuck::Pod>(
-        &self,
-        what: &'static str,
-        texels: &[T],
-        size: [u32; 2],
-        format: wgpu::TextureFormat,
-    ) -> wgpu::Texture {
-        use wgpu::util::DeviceExt;
-        let descriptor = wgpu::TextureDescriptor {
-            label: Some(what),
-            size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format,
-            usage: wgpu::TextureUsages::TEXTURE_BINDING,
-            view_formats: &[],
-        };
-        let bytes = bytemuck::cast_slice(texels);
-        self.device.create_texture_with_data(&self.queue, &descriptor, wgpu::util::TextureDataOrder::LayerMajor, bytes)
-    }
-
     /// A table in as many blocks of [`Device::block_rows`] rows as it needs.
     pub fn block_table<T: bytemuck::Pod>(
         &self,

@@ -145,7 +145,7 @@ fn see(
         return timings.time("visibility", || passes::visibility::run(device, passes, scene, visible, tile));
     }
     let charts = timings.time("charts", || Charts::new(scene.tables, scene.view, tile));
-    timings.time("visibility", || passes::charts::run(device, passes, scene, &charts, visible, tile))
+    timings.time("visibility", || passes::charts::run(device, passes, &charts, visible))
 }
 
 fn limit_step(view: &View) -> &'static str {

@@ -26,28 +26,50 @@ pub struct DrawRecord {
     pub padding: [u32; 2],
 }
 
-/// A sample solved on the host, as vertex attributes 0 to 3 of shaders/specks.wgsl.
+/// A chart, as instance attributes 0 to 15 of shaders/charts.wgsl, which says what they are.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable, PartialEq)]
+pub struct ChartRecord {
+    /// Patch + 1; x, y and depth of its middle, as bits.
+    pub id: [u32; 4],
+    /// Inverse of the linear map, row by row.
+    pub inverse: [f32; 4],
+    /// (u,v) of the middle, half the side of the square, zero.
+    pub start: [f32; 4],
+    /// Origin and size in the patch.
+    pub place: [f32; 4],
+    /// Rows of v: x, y, depth.
+    pub net: [[[f32; 4]; 3]; 4],
+}
+
+/// A sample solved on the host, as vertex attributes 0 to 2 of shaders/specks.wgsl.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable, PartialEq)]
 pub struct SpeckRecord {
-    /// Centre of the sample in normalised device coordinates.
-    pub place: [f32; 2],
+    /// Centre of the sample in normalised device coordinates, and depth.
+    pub place: [f32; 3],
     /// Patch + 1.
     pub patch_id: u32,
     /// Patch-local parameters.
     pub uv: [f32; 2],
-    /// Depth.
-    pub depth: f32,
 }
 
-/// `SightIn`, shaders/charts.wgsl.
+/// `Lens`, shaders/charts.wgsl.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct SightRecord {
+pub struct LensRecord {
+    /// Samples.
+    pub size: [f32; 2],
     /// 1 in perspective, else 0.
     pub perspective: f32,
+    /// Depth that the depth buffer shows as 1.
+    pub near: f32,
+    /// Orthographic: depth that it shows as 0.
+    pub far: f32,
+    /// Orthographic: scale of depths.
+    pub scale: f32,
     /// Zero.
-    pub padding: [f32; 3],
+    pub padding: [f32; 2],
 }
 
 /// `Resolve`, shaders/resolve.wgsl.

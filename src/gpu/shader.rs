@@ -2,6 +2,7 @@
 
 use super::NO_PATCH;
 use super::charts::BAND;
+use super::records::ChartRecord;
 use super::tables::TABLE_LEVELS;
 use crate::stam::LEVELS;
 
@@ -29,9 +30,7 @@ pub const BLOCK_ROWS: u32 = 8192;
 /// Texels of one level of an irregular patch: 9 rows of 4 points, x, y and z each.
 pub const LEVEL_TEXELS: u32 = 27;
 /// Texels of a chart.
-pub const CHART_TEXELS: u32 = 16;
-/// Samples a side of the tiles that have lists of charts.
-pub const CHART_TILE: u32 = 16;
+pub const CHART_TEXELS: u32 = (size_of::<ChartRecord>() / 16) as u32;
 /// How a sample came to its point: not at all.
 pub const STATE_NONE: u32 = 0;
 /// Solved on the host.
@@ -83,7 +82,6 @@ impl Module {
     }
 }
 
-const AT: &str = include_str!("../../shaders/shared/at.wgsl");
 const RECORDS: &str = include_str!("../../shaders/shared/records.wgsl");
 const TABLES: &str = include_str!("../../shaders/shared/tables.wgsl");
 const LIMIT_POINT: &str = include_str!("../../shaders/shared/limit_point.wgsl");
@@ -96,13 +94,12 @@ const REFLECTION: &str = include_str!("../../shaders/field/reflection.wgsl");
 /// Rasterises the proxy.
 pub const VISIBILITY: Module = Module {
     name: "visibility",
-    files: &[AT, RECORDS, TABLES, LIMIT_POINT, include_str!("../../shaders/visibility.wgsl")],
+    files: &[RECORDS, TABLES, LIMIT_POINT, include_str!("../../shaders/visibility.wgsl")],
 };
 /// Exact surface per pixel.
 pub const LIMIT: Module = Module {
     name: "limit",
     files: &[
-        AT,
         RECORDS,
         TABLES,
         LIMIT_POINT,
@@ -116,7 +113,7 @@ pub const LIMIT: Module = Module {
 /// Interpolated surface per pixel.
 pub const POLYGON: Module = Module {
     name: "polygon",
-    files: &[AT, RECORDS, REFLECTION, OCTAHEDRAL, SURFACE, FULLSCREEN, include_str!("../../shaders/polygon.wgsl")],
+    files: &[RECORDS, REFLECTION, OCTAHEDRAL, SURFACE, FULLSCREEN, include_str!("../../shaders/polygon.wgsl")],
 };
 /// Colour.
 pub const SHADE: Module = Module {
@@ -127,16 +124,13 @@ pub const SHADE: Module = Module {
 pub const RESOLVE: Module =
     Module { name: "resolve", files: &[FULLSCREEN, include_str!("../../shaders/resolve.wgsl")] };
 /// Limit at samples.
-pub const EVALUATE: Module = Module {
-    name: "evaluate",
-    files: &[AT, RECORDS, TABLES, LIMIT_POINT, include_str!("../../shaders/evaluate.wgsl")],
-};
+pub const EVALUATE: Module =
+    Module { name: "evaluate", files: &[RECORDS, TABLES, LIMIT_POINT, include_str!("../../shaders/evaluate.wgsl")] };
 
 /// Samples solved on the host.
 pub const SPECKS: Module = Module { name: "specks", files: &[include_str!("../../shaders/specks.wgsl")] };
 /// What each sample sees first.
-pub const CHARTS: Module =
-    Module { name: "charts", files: &[AT, FULLSCREEN, include_str!("../../shaders/charts.wgsl")] };
+pub const CHARTS: Module = Module { name: "charts", files: &[include_str!("../../shaders/charts.wgsl")] };
 
 /// All modules.
 pub const MODULES: [Module; 8] = [SPECKS, CHARTS, VISIBILITY, LIMIT, POLYGON, SHADE, RESOLVE, EVALUATE];
@@ -157,7 +151,6 @@ fn constants(variant: &Variant) -> String {
         ("CENTRE_LEVEL", LEVELS as u32),
         ("NO_PATCH", NO_PATCH),
         ("CHART_TEXELS", CHART_TEXELS),
-        ("CHART_TILE", CHART_TILE),
         ("STATE_SOLVED", STATE_SOLVED),
         ("STATE_CHART", STATE_CHART),
         ("STATE_DOUBTFUL", STATE_DOUBTFUL),

@@ -1,9 +1,10 @@
 //! Cuts patches into charts, and solves what is too small for them.
 
+use super::Frame;
 use super::lens::Lens;
 use super::piece::{Bounds, Piece, Seen, seen};
-use super::solve::{POINT, first_hit};
-use super::{Chart, Frame, MAX_DISTORTION, Speck};
+use super::solve::{POINT, chart, first_hit};
+use crate::gpu::records::{ChartRecord, SpeckRecord};
 use crate::gpu::tables::PatchNets;
 use crate::stam::{Rings, WINDOWS};
 use glam::DVec3;
@@ -18,8 +19,8 @@ const DEEPEST: u32 = 40;
 /// What a patch gives.
 #[derive(Debug, Default)]
 pub(super) struct Harvest {
-    pub charts: Vec<Chart>,
-    pub specks: Vec<Speck>,
+    pub charts: Vec<ChartRecord>,
+    pub specks: Vec<SpeckRecord>,
 }
 
 /// Cuts patches.
@@ -54,7 +55,7 @@ impl<'a> Divider<'a> {
     fn irregular(&mut self, levels: [u8; 2], mut rings: Rings<'_>) {
         let limit = rings.limit();
         loop {
-            match seen(self.lens, rings.hull().map(|p| self.lens.project(limit, p))) {
+            match seen(self.lens, rings.hull().map(|p| self.lens.project(limit, p).map(|x| [x]))) {
                 Seen::No => return,
                 Seen::Straddles if rings.level() > DEEPEST => return,
                 Seen::Straddles => (),
@@ -101,9 +102,9 @@ impl<'a> Divider<'a> {
                     }
                     if piece.owed == [0; 2]
                         && bounds.extent() <= LARGEST
-                        && let Some(frame) = piece.frame(self.lens, &bounds).filter(|f| f.distortion < MAX_DISTORTION)
+                        && let Some(frame) = chart(self.lens, &piece, &bounds)
                     {
-                        self.chart(&piece, &bounds, &frame);
+                        self.chart(&piece, &frame);
                         continue;
                     }
                 }
@@ -117,13 +118,15 @@ impl<'a> Divider<'a> {
         }
     }
 
-    fn chart(&mut self, piece: &Piece, bounds: &Bounds, frame: &Frame) {
-        self.out.charts.push(Chart {
-            patch: self.patch,
-            bounds: *bounds,
-            frame: *frame,
-            origin: piece.origin,
-            size: piece.size,
+    fn chart(&mut self, piece: &Piece, frame: &Frame) {
+        let [x, y, depth] = [frame.centre[0], frame.centre[1], frame.depth].map(|x| (x as f32).to_bits());
+        let row = |values: [f64; 4]| values.map(|x| x as f32);
+        let [[a, b], [c, d]] = frame.inverse;
+        self.out.charts.push(ChartRecord {
+            id: [self.patch + 1, x, y, depth],
+            inverse: row([a, b, c, d]),
+            start: row([frame.start[0], frame.start[1], frame.half(), 0.0]),
+            place: row([piece.origin[0], piece.origin[1], piece.size[0], piece.size[1]]),
             net: piece.relative_to(self.lens, frame),
         });
     }
@@ -139,15 +142,16 @@ impl<'a> Divider<'a> {
     }
 
     fn speck(&mut self, sample: [u32; 2], uv: [f64; 2], depth: f64) {
-        self.out.specks.push(Speck { sample, patch: self.patch, uv: uv.map(|x| x as f32), depth: depth as f32 });
+        let place = self.lens.place(sample, depth);
+        self.out.specks.push(SpeckRecord { place, patch_id: self.patch + 1, uv: uv.map(|x| x as f32) });
     }
 }
 
-/// Bounds of the samples that the whole source may cover: a quick way to know that a tile sees nothing.
+/// Whether the tile may see anything of what is in a box.
 pub(super) fn sees_box(lens: &Lens, [low, high]: [DVec3; 2]) -> bool {
     let corner = |i: usize| {
         let pick = |bit: usize, a: f64, b: f64| if i >> bit & 1 == 0 { a } else { b };
         DVec3::new(pick(0, low.x, high.x), pick(1, low.y, high.y), pick(2, low.z, high.z))
     };
-    seen(lens, (0..8).map(|i| lens.project(corner(i), DVec3::ZERO))) != Seen::No
+    seen(lens, (0..8).map(|i| lens.project(corner(i), DVec3::ZERO).map(|x| [x]))) != Seen::No
 }

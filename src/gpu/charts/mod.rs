@@ -19,24 +19,21 @@
 //! is left to its neighbours by adjacency either: each chart answers for its own square, within 0.002 samples.
 //!
 //! # Practice
-//! [`Charts::new`] cuts all patches for one tile of a picture, in parallel, in the order of the patches; charts go to the adapter
-//! with, for each tile of [`CHART_TILE`] samples, a list of those that may cover it, nearest first (`shaders/charts.wgsl`); what
-//! was solved goes along as points ([`Speck`]).
+//! [`Charts::new`] cuts all patches for one tile of a picture, in parallel, in the order of the patches; the adapter draws every
+//! chart as the parallelogram that must hold it, with Newton's method in each fragment (`shaders/charts.wgsl`) and depth from the
+//! point that was found, and what was solved here as points ([`SpeckRecord`]); the depth buffer keeps what is seen first.
 
-mod bins;
 mod divide;
 mod lens;
 mod piece;
 mod solve;
 
 use super::View;
-use super::records::SpeckRecord;
-use super::shader::{CHART_TEXELS, CHART_TILE};
+use super::records::{ChartRecord, LensRecord, SpeckRecord};
 use super::tables::Tables;
 use super::view::Tile;
 use divide::{Divider, Harvest};
 use lens::Lens;
-use piece::Bounds;
 use rayon::prelude::*;
 
 /// Distance in samples within which the border of a piece is taken for its inside, so that neighbours leave no gap: a
@@ -44,7 +41,7 @@ use rayon::prelude::*;
 pub(super) const BAND: f64 = 2e-4;
 
 /// q up to which a piece is a chart: Newton's error shrinks to a half at least each step, in practice quadratically.
-const MAX_DISTORTION: f64 = 0.2;
+const MAX_DISTORTION: f64 = 0.3;
 
 /// How the projection of a piece looks from its middle.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,71 +60,21 @@ struct Frame {
     distortion: f64,
 }
 
-/// A piece of a patch whose projection is all but affine.
-#[derive(Debug)]
-struct Chart {
-    patch: u32,
-    bounds: Bounds,
-    frame: Frame,
-    /// Its place in the patch.
-    origin: [f64; 2],
-    size: [f64; 2],
-    /// Bezier points: rows of v of x, y (samples from the frame's centre, times weight) and depth.
-    net: [[[f32; 4]; 3]; 4],
-}
-
-impl Chart {
+impl Frame {
     /// Half the side of the square round (1/2, 1/2) in which the linear map sees every sample that the chart covers: it errs
-    /// by q times the distance from the middle.
+    /// by q times the distance from the middle. And a thousandth more, for the rounding of the parallelogram's corners.
     fn half(&self) -> f64 {
-        let band = self.frame.inverse.iter().map(|[a, b]| BAND * (a.abs() + b.abs())).fold(0.0, f64::max);
-        0.5 * (1.0 + self.frame.distortion) + 2.0 * band + 1e-5
+        let band = self.inverse.iter().map(|[a, b]| BAND * (a.abs() + b.abs())).fold(0.0, f64::max);
+        0.501 * (1.0 + self.distortion) + 2.0 * band
     }
-
-    /// A depth that no point of the chart is nearer than, in f32.
-    fn near(&self) -> f32 {
-        (self.bounds.near - self.bounds.near.abs() * 1e-6) as f32
-    }
-
-    /// As shaders/charts.wgsl reads it.
-    fn texels(&self) -> [[u32; 4]; CHART_TEXELS as usize] {
-        let Frame { centre, depth, inverse: [m, n], start, .. } = self.frame;
-        let row = |values: [f64; 4]| values.map(|x| (x as f32).to_bits());
-        let mut texels = [[0; 4]; CHART_TEXELS as usize];
-        texels[0] = row([centre[0], centre[1], f64::from(self.near()), depth]);
-        texels[1] = row([m[0], m[1], n[0], n[1]]);
-        texels[2] = row([start[0], start[1], self.half(), 0.0]);
-        texels[2][3] = self.patch;
-        texels[3] = row([self.origin[0], self.origin[1], self.size[0], self.size[1]]);
-        for (texel, values) in texels[4..].iter_mut().zip(self.net.as_flattened()) {
-            *texel = values.map(f32::to_bits);
-        }
-        texels
-    }
-}
-
-/// A sample that was solved on the way.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Speck {
-    sample: [u32; 2],
-    patch: u32,
-    uv: [f32; 2],
-    depth: f32,
 }
 
 /// Everything that the samples of a tile may see.
 #[derive(Debug)]
 pub(super) struct Charts {
-    /// [`CHART_TEXELS`] a chart.
-    pub texels: Vec<[u32; 4]>,
-    /// First and end of the list of each tile, row by row.
-    pub tiles: Vec<[u32; 2]>,
-    /// Tiles a row and a column.
-    pub grid: [u32; 2],
-    /// Charts, tile by tile, nearest first.
-    pub list: Vec<u32>,
-    /// The nearest speck of each sample that has one.
+    pub charts: Vec<ChartRecord>,
     pub specks: Vec<SpeckRecord>,
+    pub lens: LensRecord,
 }
 
 impl Charts {
@@ -135,7 +82,7 @@ impl Charts {
     pub fn new(tables: &Tables, view: &View, tile: &Tile) -> Charts {
         /// Patches a job.
         const JOB: usize = 64;
-        let lens = Lens::new(view, tile, view.camera.near(tables.bounds()));
+        let lens = Lens::new(view, tile, tables.bounds());
         let level = view.proxy_level.unwrap_or(0) as u8;
         let count = if divide::sees_box(&lens, tables.bounds()) { tables.patches() } else { 0 };
         let harvests: Vec<Harvest> = (0..count.div_ceil(JOB))
@@ -148,32 +95,11 @@ impl Charts {
                 divider.out
             })
             .collect();
-        let charts: Vec<&Chart> = harvests.iter().flat_map(|harvest| &harvest.charts).collect();
-        let grid = tile.size.map(|n| n.div_ceil(CHART_TILE));
-        let (tiles, list) = bins::sorted(&charts, grid);
-        Charts {
-            texels: charts.par_iter().flat_map_iter(|chart| chart.texels()).collect(),
-            tiles,
-            grid,
-            list,
-            specks: nearest(harvests.iter().flat_map(|harvest| &harvest.specks).copied().collect(), &lens),
+        let (mut charts, mut specks) = (Vec::new(), Vec::new());
+        for harvest in harvests {
+            charts.extend(harvest.charts);
+            specks.extend(harvest.specks);
         }
+        Charts { charts, specks, lens: lens.record() }
     }
-}
-
-/// The nearest speck of each sample.
-fn nearest(mut specks: Vec<Speck>, lens: &Lens) -> Vec<SpeckRecord> {
-    specks.par_sort_by(|a, b| (a.sample, a.depth).partial_cmp(&(b.sample, b.depth)).expect("depths are numbers"));
-    specks.dedup_by_key(|speck| speck.sample);
-    let record = |speck: &Speck| SpeckRecord {
-        // The centre of the sample in normalised device coordinates.
-        place: [0, 1].map(|k| {
-            let x = (2.0 * f64::from(speck.sample[k]) + 1.0) / lens.size[k] - 1.0;
-            if k == 0 { x as f32 } else { -x as f32 }
-        }),
-        patch_id: speck.patch + 1,
-        uv: speck.uv,
-        depth: speck.depth,
-    };
-    specks.iter().map(record).collect()
 }

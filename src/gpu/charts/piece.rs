@@ -60,35 +60,50 @@ impl Bounds {
     }
 }
 
-/// Bounds of projected points, and whether they are seen at all.
-pub(super) fn seen(lens: &Lens, points: impl Iterator<Item = [f64; 3]>) -> Seen {
-    let mut bounds = Bounds { low: [f64::INFINITY; 2], high: [f64::NEG_INFINITY; 2], near: f64::INFINITY };
-    let (mut some_before, mut all_before) = (false, true);
-    // All points beyond one side of the frustum: so is what they control.
-    let mut outside = [true; 4];
-    for [x, y, depth] in points {
-        let weight = lens.weight(depth);
-        let before = depth < lens.near;
-        some_before |= before;
-        all_before &= before;
-        for (k, value) in [x, y].into_iter().enumerate() {
-            outside[2 * k] &= value < (0.5 - BAND) * weight;
-            outside[2 * k + 1] &= value > (lens.size[k] - 0.5 + BAND) * weight;
+/// The larger of two numbers: `f64::max` asks for NaN, which keeps loops from becoming vectors.
+fn max(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+fn min(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// Bounds of projected points, and whether what they control is seen at all. In groups of `N`.
+pub(super) fn seen<const N: usize>(lens: &Lens, points: impl Iterator<Item = [[f64; N]; 3]>) -> Seen {
+    let mut low = [[f64::INFINITY; N]; 2];
+    let mut high = [[f64::NEG_INFINITY; N]; 2];
+    let (mut near, mut far) = ([f64::INFINITY; N], [f64::NEG_INFINITY; N]);
+    // How far the points reach over each side of the frustum from beyond: at most 0 if all of them lie beyond.
+    let mut reach = [[f64::NEG_INFINITY; N]; 4];
+    for points in points {
+        let depth = &points[2];
+        let weight: [f64; N] = std::array::from_fn(|k| lens.weight(depth[k]));
+        for k in 0..N {
+            near[k] = min(near[k], depth[k]);
+            far[k] = max(far[k], depth[k]);
         }
-        let inverse = 1.0 / weight;
-        for (k, value) in [x * inverse, y * inverse].into_iter().enumerate() {
-            bounds.low[k] = bounds.low[k].min(value);
-            bounds.high[k] = bounds.high[k].max(value);
+        for (axis, side) in [(0, lens.size[0]), (1, lens.size[1])] {
+            for k in 0..N {
+                let value = points[axis][k];
+                reach[2 * axis][k] = max(reach[2 * axis][k], value - (0.5 - BAND) * weight[k]);
+                reach[2 * axis + 1][k] = max(reach[2 * axis + 1][k], (side - 0.5 + BAND) * weight[k] - value);
+                let seen = value / weight[k];
+                low[axis][k] = min(low[axis][k], seen);
+                high[axis][k] = max(high[axis][k], seen);
+            }
         }
-        bounds.near = bounds.near.min(depth);
     }
-    if all_before || outside.contains(&true) {
-        Seen::No
-    } else if some_before {
-        Seen::Straddles
-    } else {
-        Seen::Within(bounds)
+    let least = |values: &[f64; N]| values.iter().copied().fold(f64::INFINITY, min);
+    let most = |values: &[f64; N]| values.iter().copied().fold(f64::NEG_INFINITY, max);
+    if most(&far) < lens.near || reach.iter().any(|side| most(side) < 0.0) {
+        return Seen::No;
     }
+    let near = least(&near);
+    if near < lens.near {
+        return Seen::Straddles;
+    }
+    Seen::Within(Bounds { low: low.each_ref().map(least), high: high.each_ref().map(most), near })
 }
 
 /// Bezier points of a uniform cubic B-spline piece.
@@ -100,6 +115,11 @@ fn bezier([a, b, c, d]: Row) -> Row {
 
 fn transposed(net: &[Row; 4]) -> [Row; 4] {
     std::array::from_fn(|i| std::array::from_fn(|j| net[j][i]))
+}
+
+/// Control values of the derivative across rows of Bezier points.
+fn differences(net: &[Row; 4]) -> [f64; 12] {
+    std::array::from_fn(|k| 3.0 * (net[k / 4 + 1][k % 4] - net[k / 4][k % 4]))
 }
 
 /// Both halves of rows of Bezier points: de Casteljau at 1/2, all columns at once.
@@ -124,22 +144,25 @@ impl Piece {
 
     pub fn seen(&self, lens: &Lens) -> Seen {
         let [x, y, depth] = &self.net;
-        seen(lens, (0..16).map(|k| [x[k / 4][k % 4], y[k / 4][k % 4], depth[k / 4][k % 4]]))
+        seen(lens, (0..4).map(|j| [x[j], y[j], depth[j]]))
     }
 
-    /// Whether a piece beyond the near plane is longer along v: by the lengths of its projected control polygons.
+    /// Whether a piece beyond the near plane is longer along v: by the lengths of its projected control polygons, in city
+    /// blocks.
     pub fn longer_along_v(&self, lens: &Lens) -> bool {
-        let at = |i: usize, j: usize| {
-            let weight = lens.weight(self.net[2][j][i]);
-            [self.net[0][j][i] / weight, self.net[1][j][i] / weight]
-        };
-        let distance = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]);
-        let along = |k: usize, v: bool| -> f64 {
-            let point = |i: usize| if v { at(k, i) } else { at(i, k) };
-            (0..3).map(|i| distance(point(i), point(i + 1))).sum()
-        };
-        let longest = |v: bool| (0..4).map(|k| along(k, v)).fold(0.0, f64::max);
-        longest(true) > longest(false)
+        let mut lengths = [[0.0; 4]; 2];
+        let inverse = self.net[2].map(|row| row.map(|depth| 1.0 / lens.weight(depth)));
+        for net in &self.net[..2] {
+            let seen: [Row; 4] = std::array::from_fn(|j| std::array::from_fn(|i| net[j][i] * inverse[j][i]));
+            for k in 0..4 {
+                for i in 0..3 {
+                    lengths[0][k] += (seen[k][i + 1] - seen[k][i]).abs();
+                    lengths[1][k] += (seen[i + 1][k] - seen[i][k]).abs();
+                }
+            }
+        }
+        let [along_u, along_v] = lengths.map(|lengths| lengths.into_iter().fold(0.0, max));
+        along_v > along_u
     }
 
     /// The lower and the upper half along u or v.
@@ -170,7 +193,7 @@ impl Piece {
         let middle = self.at([0.5; 2]);
         let weight = lens.weight(middle.value[2]);
         // Sixteenths: exact in f32 over every tile.
-        let centre = [0, 1].map(|k| (middle.value[k] / weight * 16.0).round() / 16.0);
+        let centre = [0, 1].map(|k| f64::from((middle.value[k] / weight * 16.0) as i32) / 16.0);
         let scale = 1.0 / weight;
         let relative = |d: [f64; 3]| {
             let change = lens.weight_change(d[2]) * scale;
@@ -178,31 +201,32 @@ impl Piece {
         };
         let (du, dv) = (relative(middle.du), relative(middle.dv));
         let determinant = du[0] * dv[1] - du[1] * dv[0];
-        let lengths = du[0].hypot(du[1]) * dv[0].hypot(dv[1]);
-        if determinant.abs() <= 1e-9 * lengths {
+        // Squares of the product of lengths and, relative to it, of the sine of the angle: thinner parallelograms would lose digits
+        // in f32.
+        let lengths = (du[0] * du[0] + du[1] * du[1]) * (dv[0] * dv[0] + dv[1] * dv[1]);
+        if !(determinant * determinant > 1e-6 * lengths) {
             return None;
         }
         let inverse = [[dv[1] / determinant, -dv[0] / determinant], [-du[1] / determinant, du[0] / determinant]];
         let reach = [0, 1].map(|k| (bounds.high[k] - centre[k]).max(centre[k] - bounds.low[k]) + BAND);
         // Largest deviation in each row of J0^-1 J - 1 of the column of u, then of v.
         let mut deviation = [[0.0f64; 2]; 2];
-        let mut look = |column: usize, d: [f64; 3]| {
-            let [x, y, change] = relative(d);
-            let change = change.abs();
-            for row in 0..2 {
-                let [a, b] = inverse[row];
-                let along = a * x + b * y - f64::from(u8::from(row == column));
-                let slack = change * (a.abs() * reach[0] + b.abs() * reach[1]);
-                deviation[column][row] = deviation[column][row].max(along.abs() + slack);
-            }
-        };
-        for j in 0..4 {
-            for i in 0..3 {
-                look(0, std::array::from_fn(|c| 3.0 * (self.net[c][j][i + 1] - self.net[c][j][i])));
-                look(1, std::array::from_fn(|c| 3.0 * (self.net[c][i + 1][j] - self.net[c][i][j])));
+        let (along_u, along_v) =
+            (self.net.map(|net| differences(&transposed(&net))), self.net.map(|net| differences(&net)));
+        for (column, [x, y, depth]) in [along_u, along_v].into_iter().enumerate() {
+            for k in 0..12 {
+                let change = lens.weight_change(depth[k]);
+                let (x, y) = ((x[k] - centre[0] * change) * scale, (y[k] - centre[1] * change) * scale);
+                let change = change.abs() * scale;
+                for row in 0..2 {
+                    let [a, b] = inverse[row];
+                    let along = a * x + b * y - if row == column { 1.0 } else { 0.0 };
+                    let slack = change * (a.abs() * reach[0] + b.abs() * reach[1]);
+                    deviation[column][row] = max(deviation[column][row], along.abs() + slack);
+                }
             }
         }
-        let distortion = (0..2).map(|row| deviation[0][row] + deviation[1][row]).fold(0.0, f64::max);
+        let distortion = max(deviation[0][0] + deviation[1][0], deviation[0][1] + deviation[1][1]);
         let offset = [0, 1].map(|k| middle.value[k] * scale - centre[k]);
         let start = [0, 1].map(|row: usize| 0.5 - inverse[row][0] * offset[0] - inverse[row][1] * offset[1]);
         Some(Frame { centre, depth: middle.value[2], weight, inverse, start, distortion })
@@ -217,7 +241,7 @@ impl Piece {
                 std::array::from_fn(|i| ((self.net[k][j][i] - frame.centre[k] * weight(i)) * scale) as f32)
             };
             let depth = |i: usize| match lens.perspective {
-                true => self.net[2][j][i] * scale,
+                true => (self.net[2][j][i] - frame.depth) * scale,
                 false => self.net[2][j][i] - frame.depth,
             };
             [side(0), side(1), std::array::from_fn(|i| depth(i) as f32)]

@@ -20,6 +20,9 @@ pub(super) const POINT: f64 = 2e-4;
 /// The first point of a piece that the sample at `p` sees: by Newton's method where the projection is a chart, by halving
 /// elsewhere. Within [`BAND`] of the piece's border, the border is seen.
 pub(super) fn first_hit(lens: &Lens, piece: &Piece, bounds: &Bounds, p: [f64; 2]) -> Option<Hit> {
+    if let Some(frame) = chart(lens, piece, bounds) {
+        return newton(lens, piece, &frame, p);
+    }
     let mut first: Option<Hit> = None;
     let mut keep = |hit: Hit| {
         if first.is_none_or(|first| hit.depth < first.depth) {
@@ -38,7 +41,7 @@ pub(super) fn first_hit(lens: &Lens, piece: &Piece, bounds: &Bounds, p: [f64; 2]
                     keep(Hit { uv: piece.to_patch([0.5; 2]), depth: bounds.near });
                     continue;
                 }
-                if let Some(frame) = piece.frame(lens, &bounds).filter(|frame| frame.distortion < MAX_DISTORTION) {
+                if let Some(frame) = chart(lens, &piece, &bounds) {
                     newton(lens, &piece, &frame, p).into_iter().for_each(&mut keep);
                     continue;
                 }
@@ -56,6 +59,11 @@ pub(super) fn first_hit(lens: &Lens, piece: &Piece, bounds: &Bounds, p: [f64; 2]
         }
     }
     first
+}
+
+/// The frame of a piece, if it is a chart.
+pub(super) fn chart(lens: &Lens, piece: &Piece, bounds: &Bounds) -> Option<Frame> {
+    piece.frame(lens, bounds).filter(|frame| frame.distortion < MAX_DISTORTION)
 }
 
 /// Newton's method, kept inside the piece. It contracts: see [`MAX_DISTORTION`].
@@ -78,7 +86,8 @@ fn newton(lens: &Lens, piece: &Piece, frame: &Frame, p: [f64; 2]) -> Option<Hit>
         let next = clamp(target);
         let length = |from: [f64; 2], to: [f64; 2]| {
             let [a, b] = [to[0] - from[0], to[1] - from[1]];
-            (a * du[0] + b * dv[0]).hypot(a * du[1] + b * dv[1])
+            let [x, y] = [a * du[0] + b * dv[0], a * du[1] + b * dv[1]];
+            (x * x + y * y).sqrt()
         };
         let (moved, excess) = (length(uv, next), length(next, target));
         if moved < SETTLED {

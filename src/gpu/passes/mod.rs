@@ -50,8 +50,8 @@ impl Passes {
     pub(super) fn prepare(&self, device: &Device, pipeline: Pipeline) {
         rayon::join(
             || match pipeline {
-                Pipeline::Exact => charts::pipeline(self, device),
-                _ => visibility::pipeline(self, device, pipeline),
+                Pipeline::Exact => charts::prepare(self, device),
+                _ => drop(visibility::pipeline(self, device, pipeline)),
             },
             || {
                 limit::pipeline(self, device, pipeline);
