@@ -4,6 +4,7 @@ mod args;
 mod eval;
 mod info;
 mod render;
+mod rig;
 mod verify;
 
 use args::{Cli, Command};

@@ -1,13 +1,13 @@
 //! `render`: the picture.
 
-use super::args::{size, vector};
+use super::args::size;
+use super::rig::RigArgs;
 use super::{Failure, load, progress};
-use crate::field::{DEFAULT_FOV, Light, Pattern, Picture, Scout};
+use crate::field::{Pattern, Picture, Scout};
 use crate::gpu::{Gpu, MAX_PROXY_LEVEL, MAX_SAMPLES, Pipeline, TableLayout, View, tables};
 use crate::output::{check_writable, write_png};
 use crate::stam::LimitSurface;
 use clap::{Args, ValueEnum};
-use glam::DVec3;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -39,33 +39,8 @@ pub(super) struct RenderArgs {
     /// Samples a pixel each way
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SAMPLES)))]
     samples: u32,
-    /// Eye position [default: fit]
-    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
-    eye: Option<DVec3>,
-    /// Point in the middle of the picture [default: middle of the surface]
-    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
-    target: Option<DVec3>,
-    /// Direction that points up [default: 0,0,1]
-    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
-    up: Option<DVec3>,
-    /// Vertical field of view in degrees
-    #[arg(long, value_name = "DEG", default_value_t = DEFAULT_FOV, value_parser = fov)]
-    fov: f64,
-    /// A point of the light plane, where its coordinates are 0 [default: fit]
-    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
-    light_center: Option<DVec3>,
-    /// Normal of the light plane [default: fit]
-    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
-    light_normal: Option<DVec3>,
-    /// Direction of the light lines; its part in the plane counts [default: fit]
-    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
-    light_lines: Option<DVec3>,
-    /// Distance from one light line to the next [default: fit]
-    #[arg(long, value_name = "D", value_parser = positive)]
-    light_spacing: Option<f64>,
-    /// Width (across the lines) and length of the light plane [default: infinite]
-    #[arg(long, value_name = "W,L", value_parser = extents)]
-    light_size: Option<[f64; 2]>,
+    #[command(flatten)]
+    rig: RigArgs,
     /// Part of the spacing that shines, 0 to 1 (of circles: their diameter)
     #[arg(long, value_name = "PART", value_parser = part)]
     light_width: Option<f64>,
@@ -86,22 +61,8 @@ enum PipelineName {
     Polygon,
 }
 
-fn positive(text: &str) -> Result<f64, String> {
-    text.parse().ok().filter(|x: &f64| *x > 0.0 && x.is_finite()).ok_or("give a number above 0".to_owned())
-}
-
-fn fov(text: &str) -> Result<f64, String> {
-    let fov = text.parse().ok().filter(|x| *x > 0.0 && *x < 180.0);
-    fov.ok_or("give a field of view above 0 and below 180 degrees".to_owned())
-}
-
 fn part(text: &str) -> Result<f64, String> {
     text.parse().ok().filter(|x| (0.0..=1.0).contains(x)).ok_or("give a number from 0 to 1".to_owned())
-}
-
-fn extents(text: &str) -> Result<[f64; 2], String> {
-    let sides = text.split_once(',').and_then(|(w, l)| Some([positive(w).ok()?, positive(l).ok()?]));
-    sides.ok_or("give two numbers above 0, W,L".to_owned())
 }
 
 /// Names and times of the steps.
@@ -125,6 +86,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
             args.output.display()
         )));
     }
+    args.rig.check()?;
     check_writable(&args.output)?;
     let pattern = pattern(args)?;
     let bar = progress("drawing".to_owned());
@@ -156,41 +118,8 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Direction of sight and light that show the built-in sample best: the fender in three-quarter view, mirroring a wall of
-/// tubes behind and beside the car, whose lines run over shoulder, feature line and wheel arch.
-fn sample_rig() -> (DVec3, Light) {
-    let [center, facing, lines] = [[3.6, 2.7, 1.5], [-0.72, -0.63, -0.28], [0.38, -0.55, 0.60]].map(DVec3::from_array);
-    (DVec3::new(-1.90, 2.10, 0.81), Light::new(center, facing, lines, 1.0))
-}
-
 fn view(args: &RenderArgs, scout: &Scout, pattern: Pattern) -> Result<View, Failure> {
-    let up = args.up.unwrap_or(DVec3::Z);
-    let sample = (args.mesh.is_none() && args.up.is_none()).then(sample_rig);
-    let mut camera = match sample {
-        Some((direction, _)) => scout.camera_from(args.size, up, direction, args.fov),
-        None => {
-            let default = scout.camera(args.size, up);
-            scout.camera_from(args.size, up, default.eye - default.target, args.fov)
-        }
-    };
-    if let Some(target) = args.target {
-        camera.eye += target - camera.target;
-        camera.target = target;
-    }
-    camera.eye = args.eye.unwrap_or(camera.eye);
-    let mut light = sample.map_or_else(|| scout.light(camera.eye, up), |(_, light)| light);
-
-    let given = [args.light_center, args.light_normal, args.light_lines];
-    if given.iter().any(Option::is_some) {
-        let fitted = [light.center, light.normal(), light.axes[1]];
-        let [center, normal, lines] = std::array::from_fn(|i| given[i].unwrap_or(fitted[i]));
-        check_light(args, normal, lines)?;
-        light = Light::new(center, normal, lines, light.spacing);
-    }
-    light.spacing = args.light_spacing.unwrap_or(light.spacing);
-    if let Some(size) = args.light_size {
-        light.half = size.map(|side| side / 2.0);
-    }
+    let (camera, light) = args.rig.set_up(scout, args.size, args.mesh.is_none())?;
     let mut view = View::new(camera, light);
     view.pattern = pattern;
     view.proxy_level = args.proxy_level;
@@ -201,23 +130,6 @@ fn view(args: &RenderArgs, scout: &Scout, pattern: Pattern) -> Result<View, Fail
     };
     match args.field {
         FieldName::Reflection => Ok(view),
-    }
-}
-
-/// Refuses directions that say nothing: `Light::new` would take any instead.
-fn check_light(args: &RenderArgs, normal: DVec3, lines: DVec3) -> Result<(), Failure> {
-    /// Sine of the smallest angle between lines and normal: below it, their part in the plane is mostly rounding.
-    const PARALLEL: f64 = 1e-9;
-    let bad = |what: &str| Err(Failure::Bad(what.to_owned()));
-    let Some(normal) = normal.try_normalize() else {
-        return bad("--light-normal has no direction; give one that is not 0,0,0");
-    };
-    match lines.try_normalize() {
-        None => bad("--light-lines has no direction; give one that is not 0,0,0"),
-        Some(lines) if args.light_lines.is_some() && lines.cross(normal).length() < PARALLEL => {
-            bad("--light-lines is parallel to the normal of the light plane; give a direction with a part in the plane")
-        }
-        Some(_) => Ok(()),
     }
 }
 

@@ -204,7 +204,7 @@ mod tests {
         let surface = LimitSurface::new(&mesh::sample()).expect("the sample has a surface");
         let scout = Scout::new(&surface).expect("it has faces");
         let camera = scout.camera([200, 150], glam::DVec3::Z);
-        let view = View::new(camera, scout.light(camera.eye, glam::DVec3::Z));
+        let view = View::new(camera, scout.light(&camera));
         let samples: Vec<Sample> = (0..surface.patches().len() as u32)
             .flat_map(|patch| [0.0, 0.001, 0.03, 0.7].map(|x| Sample { patch, uv: [x, 0.6 * x] }))
             .collect();
