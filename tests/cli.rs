@@ -117,7 +117,10 @@ fn bad_usage_is_refused() {
         (&["render", "--pipeline", "magic"], "magic"),
         (&["render", "--pattern", "no-such.png"], "no-such.png"),
         (&["render", "-o", "no-such-folder/out.png"], "no-such-folder"),
-        (&["render", "-o", "out.tiff"], "out.tiff"),
+        (
+            &["render", "-o", "out.tiff"],
+            "out.tiff: not a picture that we write; choose a name that ends in .png or .exr",
+        ),
         (&["eval", "--samples", "no-such.csv"], "no-such.csv"),
         (&["render", "--up", "0,0,0"], "up direction"),
         (&["render", "--light-spacing", "0"], "above 0"),

@@ -5,6 +5,7 @@ mod eval;
 mod info;
 mod render;
 mod rig;
+mod settings;
 mod verify;
 
 use args::{Cli, Command};

@@ -2,10 +2,11 @@
 
 use super::args::size;
 use super::rig::RigArgs;
+use super::settings::made_by;
 use super::{Failure, load, progress};
 use crate::field::{Pattern, Picture, Scout};
-use crate::gpu::{Gpu, MAX_PROXY_LEVEL, MAX_SAMPLES, Pipeline, TableLayout, View, tables};
-use crate::output::{check_writable, write_png};
+use crate::gpu::{Gpu, MAX_PROXY_LEVEL, MAX_SAMPLES, Pipeline, TableLayout, Timings, View, tables};
+use crate::output::{Layers, check_writable, write_exr, write_png};
 use crate::stam::LimitSurface;
 use clap::{Args, ValueEnum};
 use std::path::{Path, PathBuf};
@@ -14,31 +15,31 @@ use std::time::{Duration, Instant};
 #[derive(Debug, Args)]
 pub(super) struct RenderArgs {
     /// Control mesh (.obj)
-    mesh: Option<PathBuf>,
-    /// Picture to write (.png)
+    pub(super) mesh: Option<PathBuf>,
+    /// Picture to write: .png, or .exr with linear colour, position, normal, ptex parameters, field and residual
     #[arg(short, long, value_name = "FILE", default_value = "view.png")]
-    output: PathBuf,
+    pub(super) output: PathBuf,
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "1024x1024", value_parser = size)]
-    size: [u32; 2],
+    pub(super) size: [u32; 2],
     /// What is read off the surface
     #[arg(long, value_enum, default_value = "reflection")]
-    field: FieldName,
+    pub(super) field: FieldName,
     /// Shape of the lights: stripes, lattice, circles, or a picture
     #[arg(long, value_name = "stripes|lattice|circles|FILE.png", default_value = "stripes")]
-    pattern: String,
+    pub(super) pattern: String,
     /// Exact limit at every pixel, or interpolated from the proxy's vertices
     #[arg(long, value_enum, default_value = "limit")]
-    pipeline: PipelineName,
+    pub(super) pipeline: PipelineName,
     /// How the tables of irregular patches are stored: auto, expanded, compact or hybrid
     #[arg(long = "tables", value_name = "LAYOUT", default_value_t)]
-    layout: TableLayout,
+    pub(super) layout: TableLayout,
     /// Level of the proxy tessellation: 2^LEVEL parts a face each way [default: as fine as the picture asks for]
     #[arg(long, value_name = "LEVEL", value_parser = clap::value_parser!(u32).range(0..=i64::from(MAX_PROXY_LEVEL)))]
-    proxy_level: Option<u32>,
+    pub(super) proxy_level: Option<u32>,
     /// Samples a pixel each way
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SAMPLES)))]
-    samples: u32,
+    pub(super) samples: u32,
     #[command(flatten)]
     rig: RigArgs,
     /// Part of the spacing that shines, 0 to 1 (of circles: their diameter)
@@ -50,19 +51,40 @@ pub(super) struct RenderArgs {
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
-enum FieldName {
+pub(super) enum FieldName {
     /// Point of the light plane that the surface mirrors into the eye
     Reflection,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
-enum PipelineName {
+pub(super) enum PipelineName {
     Limit,
     Polygon,
 }
 
 fn part(text: &str) -> Result<f64, String> {
     text.parse().ok().filter(|x| (0.0..=1.0).contains(x)).ok_or("give a number from 0 to 1".to_owned())
+}
+
+/// What is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Format {
+    Png,
+    Exr,
+}
+
+impl Format {
+    fn of(path: &Path) -> Result<Format, Failure> {
+        let is = |name: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(name));
+        match () {
+            () if is("png") => Ok(Format::Png),
+            () if is("exr") => Ok(Format::Exr),
+            () => Err(Failure::Bad(format!(
+                "{}: not a picture that we write; choose a name that ends in .png or .exr",
+                path.display()
+            ))),
+        }
+    }
 }
 
 /// Names and times of the steps.
@@ -73,19 +95,25 @@ impl Clock {
     fn time<R>(&mut self, name: &'static str, step: impl FnOnce() -> R) -> R {
         let start = Instant::now();
         let result = step();
-        self.0.push((name, start.elapsed()));
+        self.count(name, start.elapsed());
         result
+    }
+
+    fn count(&mut self, name: &'static str, time: Duration) {
+        match self.0.iter_mut().find(|(known, _)| *known == name) {
+            Some((_, total)) => *total += time,
+            None => self.0.push((name, time)),
+        }
+    }
+
+    fn add(&mut self, timings: &Timings) {
+        timings.steps.iter().for_each(|&(name, time)| self.count(name, time));
     }
 }
 
 pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let mut clock = Clock::default();
-    if !args.output.extension().is_some_and(|e| e.eq_ignore_ascii_case("png")) {
-        return Err(Failure::Bad(format!(
-            "{}: only .png is written so far; choose such a name",
-            args.output.display()
-        )));
-    }
+    let format = Format::of(&args.output)?;
     args.rig.check()?;
     check_writable(&args.output)?;
     let pattern = pattern(args)?;
@@ -101,9 +129,22 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let view = view(args, &scout, pattern)?;
     let gpu = clock.time("adapter", Gpu::new)?;
     let uploaded = clock.time("tables", || gpu.upload_as(&surface, args.layout))?;
-    let frame = gpu.render(&uploaded, &view)?;
-    clock.0.extend(&frame.timings.steps);
-    clock.time("write", || write_png(&args.output, frame.size, &frame.rgba8))?;
+    let made_by = made_by(args, &mesh, &view);
+    match format {
+        Format::Png => {
+            let frame = gpu.render(&uploaded, &view)?;
+            clock.add(&frame.timings);
+            clock.time("write", || write_png(&args.output, frame.size, &frame.rgba8, &made_by))?;
+        }
+        Format::Exr => {
+            let (colour, seen) = (gpu.render_linear(&uploaded, &view)?, gpu.inspect(&uploaded, &view)?);
+            clock.add(&colour.timings);
+            clock.add(&seen.timings);
+            let (camera, colour, seen, surface) = (&view.camera, &colour, &seen, &surface);
+            let layers = Layers { camera, colour, seen, surface, made_by: &made_by };
+            clock.time("write", || write_exr(&args.output, &layers))?;
+        }
+    }
     bar.finish_and_clear();
     if args.timings {
         eprintln!("{:<20} {}", "adapter", gpu.adapter());

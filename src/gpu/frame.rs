@@ -1,7 +1,7 @@
 //! Runs the passes in order and reads the results back.
 
 use super::device::Device;
-use super::passes::{self, Passes, PictureTargets, Scene, SurfaceTargets, Visible};
+use super::passes::{self, Colour, Passes, PictureTargets, Scene, SurfaceTargets, Visible};
 use super::view::{Tile, View};
 use super::{GpuError, Pipeline, Tables};
 use glam::{DVec2, DVec3, Vec3};
@@ -41,6 +41,17 @@ pub struct Frame {
     pub timings: Timings,
 }
 
+/// A picture to work with.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LinearFrame {
+    /// Width and height.
+    pub size: [u32; 2],
+    /// Linear RGB and coverage, premultiplied, without a background; rows from top to bottom.
+    pub rgba: Vec<[f32; 4]>,
+    /// Time of each step.
+    pub timings: Timings,
+}
+
 /// What each pixel's centre sees, rows from top to bottom. Where `patch` is [`NO_PATCH`] the rest is zero.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SurfaceImage {
@@ -61,24 +72,46 @@ pub struct SurfaceImage {
 }
 
 pub(super) fn render(device: &Device, passes: &Passes, tables: &Tables, view: &View) -> Result<Frame, GpuError> {
+    let (pixels, timings) = draw::<[u8; 4]>(device, passes, tables, view, Colour::Display)?;
+    Ok(Frame { size: view.camera.size, rgba8: pixels.into_flattened(), timings })
+}
+
+pub(super) fn render_linear(
+    device: &Device,
+    passes: &Passes,
+    tables: &Tables,
+    view: &View,
+) -> Result<LinearFrame, GpuError> {
+    let (rgba, timings) = draw(device, passes, tables, view, Colour::Linear)?;
+    Ok(LinearFrame { size: view.camera.size, rgba, timings })
+}
+
+/// Draws a picture whose pixels are `T`, which is what `colour` comes in.
+fn draw<T: bytemuck::Pod>(
+    device: &Device,
+    passes: &Passes,
+    tables: &Tables,
+    view: &View,
+    colour: Colour,
+) -> Result<(Vec<T>, Timings), GpuError> {
     view.check()?;
     let mut timings = Timings::default();
-    timings.time("compile", || passes.prepare(device, view.pipeline));
+    timings.time("compile", || passes.prepare(device, view.pipeline, colour));
     let scene = timings.time("scene", || Scene::new(device, tables, view))?;
     let size = view.camera.size;
-    let mut rgba8 = vec![0; 4 * size[0] as usize * size[1] as usize];
+    let mut whole = vec![T::zeroed(); size[0] as usize * size[1] as usize];
     for tile in Tile::cover(size, view.samples, Tile::PICTURE_SIDE) {
         let visible = Visible::new(device, &tile, view.pipeline);
-        let picture = PictureTargets::new(device, &tile);
+        let picture = PictureTargets::new(device, &tile, colour);
         timings.time("visibility", || passes::visibility::run(device, passes, &scene, &visible, &tile))?;
         timings.time(limit_step(view), || passes::limit::run(device, passes, &scene, &visible, &picture.surface))?;
         timings.time("shade", || passes::shade::run(device, passes, &scene, &visible, &picture))?;
-        timings.time("resolve", || passes::resolve::run(device, passes, &scene, &picture, &tile))?;
-        let pixels: Vec<[u8; 4]> = timings.time("read back", || device.read_texture(&picture.colour))?;
+        timings.time("resolve", || passes::resolve::run(device, passes, &scene, &picture, &tile, colour))?;
+        let pixels: Vec<T> = timings.time("read back", || device.read_texture(&picture.colour))?;
         let [origin, tile_size] = tile.pixels();
-        paste(bytemuck::cast_slice_mut::<u8, [u8; 4]>(&mut rgba8), size, &pixels, origin, tile_size);
+        paste(&mut whole, size, &pixels, origin, tile_size);
     }
-    Ok(Frame { size, rgba8, timings })
+    Ok((whole, timings))
 }
 
 pub(super) fn inspect(

@@ -24,7 +24,7 @@ pub mod tables;
 mod view;
 
 pub use device::AdapterChoice;
-pub use frame::{Frame, NO_PATCH, SurfaceImage, Timings};
+pub use frame::{Frame, LinearFrame, NO_PATCH, SurfaceImage, Timings};
 pub use tables::{PatchNet, PatchSource, TableLayout, Tables};
 pub use view::{MAX_PROXY_LEVEL, MAX_SAMPLES, Palette, Pipeline, View};
 
@@ -181,6 +181,14 @@ impl Gpu {
     /// [`GpuError::View`] for a view that cannot be drawn.
     pub fn render(&self, tables: &Tables, view: &View) -> Result<Frame, GpuError> {
         frame::render(&self.device, self.passes(tables), tables, view)
+    }
+
+    /// Draws a picture to work with: linear f32, premultiplied, without a background.
+    ///
+    /// # Errors
+    /// As [`Gpu::render`].
+    pub fn render_linear(&self, tables: &Tables, view: &View) -> Result<LinearFrame, GpuError> {
+        frame::render_linear(&self.device, self.passes(tables), tables, view)
     }
 
     /// What every pixel's centre sees: patch, (u,v), position, normal and field.

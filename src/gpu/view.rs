@@ -84,7 +84,8 @@ impl View {
         }
     }
 
-    pub(super) fn light(&self) -> &Light {
+    /// The light plane of the field.
+    pub fn light(&self) -> &Light {
         match &self.field {
             Field::Reflection(light) => light,
         }
