@@ -14,15 +14,16 @@ fn tmp() {
         let gpu = gpu_support::gpu();
         let tables = gpu.upload(&surface).unwrap();
         let Some(scout) = Scout::new(&surface) else { continue };
-        let camera = scout.camera([256, 256], glam::DVec3::Z);
-        let view = View { samples: 1, ..View::new(camera, scout.light(camera.eye, glam::DVec3::Z)) };
+        let mut camera = scout.camera([256, 256], glam::DVec3::Z);
+        if std::env::var("ORTHO").is_ok() { camera = scout.orthographic_from([256, 256], glam::DVec3::Z, camera.eye - camera.target); }
+        let view = View { samples: 1, ..View::new(camera, scout.light(&camera)) };
         let image = gpu.inspect(&tables, &view).unwrap();
         let c = Caster::new(&surface);
         let start = std::time::Instant::now();
         let hits: Vec<_> = (0..256 * 256usize)
             .into_par_iter()
             .map(|i| {
-                c.first_hit(&Ray::new(camera.eye, camera.pixel_ray((i % 256) as f64 + 0.5, (i / 256) as f64 + 0.5)))
+                { let r = camera.pixel_ray((i % 256) as f64 + 0.5, (i / 256) as f64 + 0.5); c.first_hit(&Ray::new(r.origin, r.direction)) }
             })
             .collect();
         let t = start.elapsed();

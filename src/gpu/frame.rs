@@ -3,7 +3,7 @@
 use super::certificate::{Certificate, Summary};
 use super::charts::Charts;
 use super::device::Device;
-use super::passes::{self, Passes, PictureTargets, Scene, SurfaceTargets, Visible};
+use super::passes::{self, Colour, Passes, PictureTargets, Scene, SurfaceTargets, Visible};
 use super::view::{Tile, View};
 use super::{GpuError, Pipeline, Tables};
 use glam::{DVec2, DVec3, Vec3};
@@ -46,6 +46,19 @@ pub struct Frame {
     pub timings: Timings,
 }
 
+/// A picture to work with.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LinearFrame {
+    /// Width and height.
+    pub size: [u32; 2],
+    /// Linear RGB and coverage, premultiplied, without a background; rows from top to bottom.
+    pub rgba: Vec<[f32; 4]>,
+    /// What the certificates of its samples say; `None` but for the exact pipeline.
+    pub summary: Option<Summary>,
+    /// Time of each step.
+    pub timings: Timings,
+}
+
 /// What each pixel's centre sees, rows from top to bottom. Where `patch` is [`NO_PATCH`] the rest is zero.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SurfaceImage {
@@ -75,29 +88,58 @@ impl SurfaceImage {
 }
 
 pub(super) fn render(device: &Device, passes: &Passes, tables: &Tables, view: &View) -> Result<Frame, GpuError> {
+    let Drawn { pixels, summary, timings } = draw::<[u8; 4]>(device, passes, tables, view, Colour::Display)?;
+    Ok(Frame { size: view.camera.size, rgba8: pixels.into_flattened(), summary, timings })
+}
+
+pub(super) fn render_linear(
+    device: &Device,
+    passes: &Passes,
+    tables: &Tables,
+    view: &View,
+) -> Result<LinearFrame, GpuError> {
+    let Drawn { pixels: rgba, summary, timings } = draw(device, passes, tables, view, Colour::Linear)?;
+    Ok(LinearFrame { size: view.camera.size, rgba, summary, timings })
+}
+
+/// A picture in pixels of some kind.
+struct Drawn<T> {
+    pixels: Vec<T>,
+    summary: Option<Summary>,
+    timings: Timings,
+}
+
+/// Draws a picture whose pixels are `T`, which is what `colour` comes in.
+fn draw<T: bytemuck::Pod>(
+    device: &Device,
+    passes: &Passes,
+    tables: &Tables,
+    view: &View,
+    colour: Colour,
+) -> Result<Drawn<T>, GpuError> {
     view.check()?;
     let mut timings = Timings::default();
-    timings.time("compile", || passes.prepare(device, view.pipeline));
+    timings.time("compile", || passes.prepare(device, view.pipeline, colour));
     let scene = timings.time("scene", || Scene::new(device, tables, view))?;
     let size = view.camera.size;
     let mut summary = (view.pipeline == Pipeline::Exact).then(Summary::default);
-    let mut rgba8 = vec![0; 4 * size[0] as usize * size[1] as usize];
+    let mut whole = vec![T::zeroed(); size[0] as usize * size[1] as usize];
     for tile in Tile::cover(size, view.samples, Tile::PICTURE_SIDE) {
         let visible = Visible::new(device, &tile, view.pipeline);
-        let picture = PictureTargets::new(device, &tile);
+        let picture = PictureTargets::new(device, &tile, colour);
         see(device, passes, &scene, &visible, &tile, &mut timings)?;
         timings.time(limit_step(view), || passes::limit::run(device, passes, &scene, &visible, &picture.surface))?;
         timings.time("shade", || passes::shade::run(device, passes, &scene, &visible, &picture))?;
-        timings.time("resolve", || passes::resolve::run(device, passes, &scene, &picture, &tile))?;
+        timings.time("resolve", || passes::resolve::run(device, passes, &scene, &picture, &tile, colour))?;
         if let (Some(summary), Some(texture)) = (&mut summary, &visible.certificate) {
             let bits: Vec<u32> = timings.time("certificates", || device.read_texture(texture))?;
             *summary = summary.and(timings.time("certificates", || Summary::of_bits(&bits)));
         }
-        let pixels: Vec<[u8; 4]> = timings.time("read back", || device.read_texture(&picture.colour))?;
+        let pixels: Vec<T> = timings.time("read back", || device.read_texture(&picture.colour))?;
         let [origin, tile_size] = tile.pixels();
-        paste(bytemuck::cast_slice_mut::<u8, [u8; 4]>(&mut rgba8), size, &pixels, origin, tile_size);
+        paste(&mut whole, size, &pixels, origin, tile_size);
     }
-    Ok(Frame { size, rgba8, summary, timings })
+    Ok(Drawn { pixels: whole, summary, timings })
 }
 
 pub(super) fn inspect(

@@ -27,7 +27,7 @@ mod view;
 
 pub use certificate::{Certificate, State, Summary};
 pub use device::AdapterChoice;
-pub use frame::{Frame, NO_PATCH, SurfaceImage, Timings};
+pub use frame::{Frame, LinearFrame, NO_PATCH, SurfaceImage, Timings};
 pub use tables::{PatchSource, TableLayout, Tables};
 pub use view::{MAX_PROXY_LEVEL, MAX_SAMPLES, Palette, Pipeline, View};
 
@@ -186,6 +186,14 @@ impl Gpu {
         frame::render(&self.device, self.passes(tables), tables, view)
     }
 
+    /// Draws a picture to work with: linear f32, premultiplied, without a background.
+    ///
+    /// # Errors
+    /// As [`Gpu::render`].
+    pub fn render_linear(&self, tables: &Tables, view: &View) -> Result<LinearFrame, GpuError> {
+        frame::render_linear(&self.device, self.passes(tables), tables, view)
+    }
+
     /// What every pixel's centre sees: patch, (u,v), position, normal and field.
     ///
     /// # Errors
@@ -207,7 +215,7 @@ mod tests {
         let surface = LimitSurface::new(&mesh::sample()).expect("the sample has a surface");
         let scout = Scout::new(&surface).expect("it has faces");
         let camera = scout.camera([200, 150], glam::DVec3::Z);
-        let view = View::new(camera, scout.light(camera.eye, glam::DVec3::Z));
+        let view = View::new(camera, scout.light(&camera));
         let samples: Vec<Sample> = (0..surface.patches().len() as u32)
             .flat_map(|patch| [0.0, 0.001, 0.03, 0.7].map(|x| Sample { patch, uv: [x, 0.6 * x] }))
             .collect();

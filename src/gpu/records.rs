@@ -96,14 +96,14 @@ pub struct ResolveRecord {
 pub struct FrameRecord {
     /// Row of clip-space x.
     pub clip_x: [f32; 3],
-    /// Near distance.
+    /// Near distance: z in perspective.
     pub near: f32,
     /// Row of clip-space y.
     pub clip_y: [f32; 3],
-    /// Pixels per unit at distance 1.
+    /// Pixels per unit where clip-space w is 1.
     pub focal: f32,
-    /// Row of clip-space w.
-    pub clip_w: [f32; 3],
+    /// Row of clip-space w; in an orthographic view, of z.
+    pub clip_depth: [f32; 3],
     /// Level of the proxy tessellation.
     pub proxy_level: u32,
     /// Scale of clip-space x and y to this pass's part of the picture.
@@ -112,8 +112,10 @@ pub struct FrameRecord {
     pub shift: [f32; 2],
     /// Target size in pixels.
     pub size: [f32; 2],
+    /// 1 in an orthographic view, else 0.
+    pub orthographic: u32,
     /// Zero.
-    pub padding: [f32; 2],
+    pub padding: u32,
 }
 
 /// `SampleRecord`, shaders/evaluate.wgsl.
@@ -154,7 +156,7 @@ pub struct JetRecord {
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct LightRecord {
-    /// Centre relative to the eye.
+    /// Centre relative to the viewpoint.
     pub center: [f32; 3],
     /// Period of the pattern.
     pub spacing: f32,
@@ -166,6 +168,10 @@ pub struct LightRecord {
     pub axis_y: [f32; 3],
     /// Half extent along it.
     pub half_y: f32,
+    /// Direction of sight in an orthographic view, else zero.
+    pub sight: [f32; 3],
+    /// How much of the position relative to the viewpoint the line of sight takes: 1 in perspective, else 0.
+    pub from_eye: f32,
 }
 
 /// `Shade`, shaders/shade.wgsl.

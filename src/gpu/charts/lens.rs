@@ -30,13 +30,14 @@ impl Lens {
         let Axes { right, up, forward, scale } = camera.axes();
         let [width, height] = camera.size.map(|n| 0.5 * f64::from(n * tile.samples));
         let [x, y] = tile.origin.map(f64::from);
+        let [near, far] = camera.depth_range(bounds);
         Lens {
             eye: camera.eye,
             rows: [right * (scale[0] * width), up * (-scale[1] * height), forward],
             shift: [width - x, height - y],
-            perspective: camera.is_perspective(),
-            near: camera.near(bounds),
-            far: camera.far(bounds),
+            perspective: !camera.is_orthographic(),
+            near,
+            far,
             size: tile.size.map(f64::from),
         }
     }

@@ -30,6 +30,7 @@ pub struct Passes {
     polygon_full: OnceLock<wgpu::RenderPipeline>,
     shade: OnceLock<wgpu::RenderPipeline>,
     resolve: OnceLock<wgpu::RenderPipeline>,
+    resolve_linear: OnceLock<wgpu::RenderPipeline>,
     evaluate: OnceLock<wgpu::ComputePipeline>,
 }
 
@@ -47,7 +48,7 @@ impl Passes {
     }
 
     /// Compiles what a picture needs, in parallel.
-    pub(super) fn prepare(&self, device: &Device, pipeline: Pipeline) {
+    pub(super) fn prepare(&self, device: &Device, pipeline: Pipeline, colour: Colour) {
         rayon::join(
             || match pipeline {
                 Pipeline::Exact => charts::prepare(self, device),
@@ -56,7 +57,7 @@ impl Passes {
             || {
                 limit::pipeline(self, device, pipeline);
                 shade::pipeline(self, device);
-                resolve::pipeline(self, device);
+                resolve::pipeline(self, device, colour);
             },
         );
     }
@@ -133,7 +134,24 @@ const DEPTH_FORMAT: TextureFormat = TextureFormat::Depth32Float;
 const SURFACE_FORMAT: TextureFormat = TextureFormat::Rgba32Float;
 const PACKED_FORMAT: TextureFormat = TextureFormat::Rgba32Uint;
 const SAMPLE_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
-const COLOUR_FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
+
+/// What a picture's colour is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Colour {
+    /// To be looked at: 8-bit sRGB over the background.
+    Display,
+    /// To be worked with: linear f32, premultiplied.
+    Linear,
+}
+
+impl Colour {
+    fn format(self) -> TextureFormat {
+        match self {
+            Colour::Display => TextureFormat::Rgba8Unorm,
+            Colour::Linear => TextureFormat::Rgba32Float,
+        }
+    }
+}
 
 fn target(device: &Device, size: [u32; 2], format: TextureFormat) -> wgpu::Texture {
     device.device.create_texture(&wgpu::TextureDescriptor {
@@ -169,11 +187,11 @@ impl SurfaceTargets {
 }
 
 impl PictureTargets {
-    pub fn new(device: &Device, tile: &Tile) -> PictureTargets {
+    pub fn new(device: &Device, tile: &Tile, colour: Colour) -> PictureTargets {
         PictureTargets {
             surface: target(device, tile.size, PACKED_FORMAT),
             samples: target(device, tile.size, SAMPLE_FORMAT),
-            colour: target(device, tile.pixels()[1], COLOUR_FORMAT),
+            colour: target(device, tile.pixels()[1], colour.format()),
         }
     }
 }
