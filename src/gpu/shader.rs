@@ -40,7 +40,7 @@ pub const STATE_CHART: u32 = 2;
 /// Added where the method did not converge on a chart that may lie before what was found.
 pub const STATE_DOUBTFUL: u32 = 4;
 /// Samples by which Newton's last step may move: its error is the square of that over the size of the chart.
-const SETTLED: f32 = 0.02;
+const SETTLED: f32 = 0.005;
 /// Newton's steps at most; the error halves each time at least.
 const MOST_STEPS: u32 = 24;
 /// Distance in pixels by which the borders of proxy patches overlap: large against the rasteriser's grid of 1/256 pixel
