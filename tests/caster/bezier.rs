@@ -30,6 +30,8 @@ pub struct Search {
     /// Farther hits do not count.
     end: f64,
     nearest: bool,
+    /// The part looked at last has a hit.
+    added: bool,
     pub found: Vec<Found>,
 }
 
@@ -49,7 +51,7 @@ const MAX_DEPTH: usize = 110;
 
 impl Search {
     pub fn nearest(start: f64) -> Search {
-        Search { start, end: f64::INFINITY, nearest: true, found: Vec::new() }
+        Search { start, end: f64::INFINITY, nearest: true, added: false, found: Vec::new() }
     }
 
     pub fn all(start: f64) -> Search {
@@ -68,6 +70,7 @@ impl Search {
     }
 
     fn part(&mut self, piece: usize, patch: &Patch, tolerance: f64, depth: usize) {
+        self.added = false;
         let [near, far] = range(&patch.z);
         if !self.looks_at(near, far) {
             return;
@@ -85,7 +88,14 @@ impl Search {
             if range(&halves[1].z)[0] < range(&halves[0].z)[0] {
                 halves.swap(0, 1);
             }
-            halves.iter().for_each(|half| self.part(piece, half, tolerance, depth + 1));
+            // Thinner than the tolerance, every point of a part of the line is a hit: one will do.
+            let one = patch.is_line(tolerance);
+            for half in &halves {
+                self.part(piece, half, tolerance, depth + 1);
+                if one && self.added {
+                    break;
+                }
+            }
         }
     }
 
@@ -98,6 +108,7 @@ impl Search {
             self.end = z;
             self.found.clear();
         }
+        self.added = true;
         let uv = [0, 1].map(|k| patch.corner[k] + patch.size[k] * uv[k]);
         self.found.push(Found { piece, uv, z });
     }
@@ -122,6 +133,16 @@ impl Patch {
             let [low, high] = range(&across);
             low > tolerance * length || high < -tolerance * length
         })
+    }
+
+    /// Whether all points lie within the tolerance of a line: so do spikes and cusps at extraordinary vertices, where one
+    /// direction shrinks much faster than the other.
+    fn is_line(&self, tolerance: f64) -> bool {
+        let point = |i: usize| DVec3::new(self.x[i], self.y[i], self.z[i]);
+        let far = (1..16)
+            .max_by(|&a, &b| point(a).distance_squared(point(0)).total_cmp(&point(b).distance_squared(point(0))));
+        let along = (point(far.expect("15 points")) - point(0)).normalize_or_zero();
+        (1..16).all(|i| (point(i) - point(0)).cross(along).length() <= tolerance)
     }
 
     /// The only point with x = y = 0 where there is at most one and it is found; `None` otherwise.

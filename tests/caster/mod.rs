@@ -108,6 +108,10 @@ impl<'a> Caster<'a> {
         Caster { surface, pieces, boxes }
     }
 
+    pub fn surface(&self) -> &LimitSurface {
+        self.surface
+    }
+
     /// The nearest hit.
     pub fn first_hit(&self, ray: &Ray) -> Option<Hit> {
         self.cast(ray, Search::nearest(self.start(ray))).pop()

@@ -7,7 +7,8 @@ use glam::DVec3;
 /// A finely tessellated surface.
 #[derive(Debug)]
 pub struct Brute {
-    triangles: Vec<[DVec3; 3]>,
+    /// Rows of triangles, each with the centre and radius of a sphere that holds them.
+    rows: Vec<(DVec3, f64, Vec<[DVec3; 3]>)>,
     /// Distance between triangles and surface, twice what is seen in the middle of cells and edges.
     pub error: f64,
 }
@@ -15,7 +16,7 @@ pub struct Brute {
 impl Brute {
     /// Every patch in `parts` each way.
     pub fn new(surface: &LimitSurface, parts: usize) -> Brute {
-        let mut brute = Brute { triangles: Vec::new(), error: 0.0 };
+        let mut brute = Brute { rows: Vec::new(), error: 0.0 };
         for patch in 0..surface.patches().len() {
             // Cells and their middles.
             let at = |i: usize, j: usize| {
@@ -25,9 +26,12 @@ impl Brute {
             let side = 2 * parts + 1;
             let grid: Vec<Jet> = (0..side * side).map(|k| at(k % side, k / side)).collect();
             for (i, j) in (0..parts).flat_map(|j| (0..parts).map(move |i| (2 * i, 2 * j))) {
+                if i == 0 {
+                    brute.rows.push((DVec3::ZERO, 0.0, Vec::new()));
+                }
                 let p = |a: usize, b: usize| grid[(j + b) * side + i + a];
                 let [a, b, c, d] = [p(0, 0), p(2, 0), p(2, 2), p(0, 2)].map(|jet| jet.position);
-                brute.triangles.extend([[a, b, c], [a, c, d]]);
+                brute.rows.last_mut().expect("just pushed").2.extend([[a, b, c], [a, c, d]]);
                 // A chord is farthest from its curve in the middle, h^2 / 8 times the second derivative. Along the surface
                 // the middles slide, which is no distance.
                 for (middle, a, b) in [(p(1, 0), a, b), (p(1, 1), a, c), (p(0, 1), a, d)] {
@@ -36,13 +40,20 @@ impl Brute {
                 }
             }
         }
+        for (centre, radius, triangles) in &mut brute.rows {
+            let points = || triangles.iter().flatten();
+            *centre = points().sum::<DVec3>() / points().count() as f64;
+            *radius = points().map(|p| p.distance(*centre)).fold(0.0, f64::max) * (1.0 + 1e-12);
+        }
         brute
     }
 
     /// Nearest hit and the triangle's unit normal (Moeller & Trumbore 1997).
     pub fn first_hit(&self, ray: &Ray) -> Option<(f64, DVec3)> {
         let mut best: Option<(f64, DVec3)> = None;
-        for &[a, b, c] in &self.triangles {
+        let unit = ray.direction.normalize();
+        let near = |(centre, radius, _): &&(DVec3, f64, _)| (*centre - ray.origin).cross(unit).length() <= *radius;
+        for &[a, b, c] in self.rows.iter().filter(near).flat_map(|(_, _, triangles)| triangles) {
             let (e1, e2, s) = (b - a, c - a, ray.origin - a);
             let p = ray.direction.cross(e2);
             let det = e1.dot(p);
