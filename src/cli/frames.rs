@@ -20,7 +20,7 @@ pub(super) struct FramesArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MOST_FRAMES))]
     frames: Option<u32>,
     /// Turn the eye by DEG in total about the up axis through the target, counter-clockwise seen from above; whole turns
-    /// loop
+    /// loop. A camera that is fitted is fitted to the first picture
     #[arg(long, value_name = "DEG", value_parser = way, allow_negative_numbers = true)]
     orbit: Option<f64>,
     /// Move the light plane across its lines by DIST periods of its pattern in total; whole periods of an infinite plane
