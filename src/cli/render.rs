@@ -1,14 +1,17 @@
 //! `render`: the picture.
 
 use super::args::size;
+use super::frames::FramesArgs;
 use super::rig::RigArgs;
-use super::settings::made_by;
-use super::{Failure, load, progress};
+use super::settings::{made_by, mesh_digest};
+use super::{Failure, Steps, load, progress};
 use crate::field::{Pattern, Picture, Scout};
-use crate::gpu::{Gpu, MAX_PROXY_LEVEL, MAX_SAMPLES, Pipeline, TableLayout, Timings, View, tables};
-use crate::output::{Layers, check_writable, write_exr, write_png};
+use crate::gpu::{Gpu, MAX_PROXY_LEVEL, MAX_SAMPLES, Pipeline, TableLayout, Tables, Timings, View, tables};
+use crate::output::{Layers, check_writable, read_exr_made_by, read_png_made_by, write_exr, write_png};
 use crate::stam::LimitSurface;
 use clap::{Args, ValueEnum};
+use std::fs::File;
+use std::io::BufReader;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -45,6 +48,8 @@ pub(super) struct RenderArgs {
     /// Part of the spacing that shines, 0 to 1 (of circles: their diameter)
     #[arg(long, value_name = "PART", value_parser = part)]
     light_width: Option<f64>,
+    #[command(flatten)]
+    frames: FramesArgs,
     /// Print how long each step took
     #[arg(long)]
     timings: bool,
@@ -72,13 +77,13 @@ fn part(text: &str) -> Result<f64, String> {
 
 /// What is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Format {
+pub(super) enum Format {
     Png,
     Exr,
 }
 
 impl Format {
-    fn of(path: &Path) -> Result<Format, Failure> {
+    pub(super) fn of(path: &Path) -> Result<Format, Failure> {
         let is = |name: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(name));
         match () {
             () if is("png") => Ok(Format::Png),
@@ -87,6 +92,15 @@ impl Format {
                 "{}: not a picture that we write; choose a name that ends in .png or .exr",
                 path.display()
             ))),
+        }
+    }
+
+    /// What a file says about how it was made.
+    pub(super) fn made_by(self, path: &Path) -> std::io::Result<Option<String>> {
+        let file = BufReader::new(File::open(path)?);
+        match self {
+            Format::Png => read_png_made_by(file),
+            Format::Exr => read_exr_made_by(file),
         }
     }
 }
@@ -119,7 +133,9 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let mut clock = Clock::default();
     let format = Format::of(&args.output)?;
     args.rig.check()?;
-    check_writable(&args.output)?;
+    args.frames.check()?;
+    let paths = args.frames.paths(&args.output)?;
+    check_writable(&paths[0])?;
     let pattern = pattern(args)?;
     let bar = progress("drawing".to_owned());
     let mesh = clock.time("read", || load(args.mesh.as_deref()))?;
@@ -130,26 +146,34 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
             mesh.name
         ))
     })?;
-    let view = view(args, &scout, pattern)?;
-    let gpu = clock.time("adapter", Gpu::new)?;
-    let uploaded = clock.time("tables", || gpu.upload_as(&surface, args.layout))?;
-    let made_by = made_by(args, &mesh, &view);
-    match format {
-        Format::Png => {
-            let frame = gpu.render(&uploaded, &view)?;
-            clock.add(&frame.timings);
-            clock.time("write", || write_png(&args.output, frame.size, &frame.rgba8, &made_by))?;
-        }
-        Format::Exr => {
-            let (colour, seen) = (gpu.render_linear(&uploaded, &view)?, gpu.inspect(&uploaded, &view)?);
-            clock.add(&colour.timings);
-            clock.add(&seen.timings);
-            let (camera, colour, seen, surface) = (&view.camera, &colour, &seen, &surface);
-            let layers = Layers { camera, colour, seen, surface, made_by: &made_by };
-            clock.time("write", || write_exr(&args.output, &layers))?;
+    let first = view(args, &scout, pattern)?;
+    let digest = mesh_digest(&mesh);
+    let mut shots = Vec::new();
+    for (index, path) in paths.iter().enumerate() {
+        let view = args.frames.view(&first, index as u32);
+        let made_by = made_by(args, digest, &view);
+        if args.frames.is_missing(path, &made_by)? {
+            shots.push(Shot { path, view, made_by });
         }
     }
+    if shots.is_empty() {
+        return Ok(());
+    }
+    let gpu = clock.time("adapter", Gpu::new)?;
+    let uploaded = clock.time("tables", || gpu.upload_as(&surface, args.layout))?;
+    let steps = match &shots[..] {
+        [_] => None,
+        _ => Some(Steps::new(shots.len(), "frames")),
+    };
+    if steps.is_some() {
+        bar.finish_and_clear();
+    }
+    for shot in &shots {
+        shot.take(format, &gpu, &uploaded, &surface, &mut clock)?;
+        steps.iter().for_each(Steps::done_one);
+    }
     bar.finish_and_clear();
+    drop(steps);
     if args.timings {
         eprintln!("{:<20} {}", "adapter", gpu.adapter());
         for (name, time) in &clock.0 {
@@ -161,6 +185,41 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
         }
     }
     Ok(())
+}
+
+/// A picture to take.
+struct Shot<'a> {
+    path: &'a Path,
+    view: View,
+    made_by: String,
+}
+
+impl Shot<'_> {
+    fn take(
+        &self,
+        format: Format,
+        gpu: &Gpu,
+        tables: &Tables,
+        surface: &LimitSurface,
+        clock: &mut Clock,
+    ) -> Result<(), Failure> {
+        let Shot { path, view, made_by } = self;
+        match format {
+            Format::Png => {
+                let frame = gpu.render(tables, view)?;
+                clock.add(&frame.timings);
+                clock.time("write", || write_png(path, frame.size, &frame.rgba8, made_by))?;
+            }
+            Format::Exr => {
+                let (colour, seen) = (gpu.render_linear(tables, view)?, gpu.inspect(tables, view)?);
+                clock.add(&colour.timings);
+                clock.add(&seen.timings);
+                let layers = Layers { camera: &view.camera, colour: &colour, seen: &seen, surface, made_by };
+                clock.time("write", || write_exr(path, &layers))?;
+            }
+        }
+        Ok(())
+    }
 }
 
 fn view(args: &RenderArgs, scout: &Scout, pattern: Pattern) -> Result<View, Failure> {
