@@ -1,5 +1,6 @@
 //! The command line: a thin layer of typed flags over the library.
 
+mod account;
 mod args;
 mod eval;
 mod frames;

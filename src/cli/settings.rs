@@ -57,6 +57,9 @@ pub(super) fn made_by(args: &RenderArgs, mesh: u64, view: &View) -> String {
         add("proxy-level", level.to_string());
     }
     add("samples", view.samples.to_string());
+    if let Some(show) = &args.show {
+        add("show", value_name(show));
+    }
     let _ = write!(text, " # mesh {mesh:016x}");
     if let Pattern::Picture(picture) = &view.pattern {
         let mut digest = Digest::new();
