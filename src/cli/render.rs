@@ -7,7 +7,7 @@ use super::rig::RigArgs;
 use super::settings::{made_by, mesh_digest};
 use super::{Failure, Steps, load, progress};
 use crate::field::{Pattern, Picture, Scout};
-use crate::gpu::{Gpu, MAX_PROXY_LEVEL, MAX_SAMPLES, Pipeline, TableLayout, Tables, View, tables};
+use crate::gpu::{Gpu, MAX_PROXY_LEVEL, MAX_SAMPLES, Pipeline, Stage, TableLayout, Tables, View, tables};
 use crate::output::{Heat, Layers, check_writable, heat, read_exr_made_by, read_png_made_by, write_exr, write_png};
 use crate::stam::LimitSurface;
 use clap::{Args, ValueEnum};
@@ -34,6 +34,9 @@ pub(super) struct RenderArgs {
     /// How position and normal come to a pixel
     #[arg(long, value_enum, default_value = "exact")]
     pub(super) pipeline: PipelineName,
+    /// Kind of the passes that evaluate and shade: the picture does not depend on it
+    #[arg(long, value_enum, default_value = "auto")]
+    stage: StageName,
     /// How the tables of irregular patches are stored: auto, expanded, compact or hybrid
     #[arg(long = "tables", value_name = "LAYOUT", default_value_t)]
     pub(super) layout: TableLayout,
@@ -65,6 +68,14 @@ pub(super) struct RenderArgs {
 pub(super) enum FieldName {
     /// Point of the light plane that the surface mirrors into the eye
     Reflection,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(super) enum StageName {
+    /// Fragment on software adapters, else what took less time over the first tile
+    Auto,
+    Fragment,
+    Compute,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -241,6 +252,11 @@ fn view(args: &RenderArgs, scout: &Scout, pattern: Pattern) -> Result<View, Fail
         PipelineName::Exact => Pipeline::Exact,
         PipelineName::Limit => Pipeline::Limit,
         PipelineName::Polygon => Pipeline::Polygon,
+    };
+    view.stage = match args.stage {
+        StageName::Auto => Stage::Auto,
+        StageName::Fragment => Stage::Fragment,
+        StageName::Compute => Stage::Compute,
     };
     match args.field {
         FieldName::Reflection => Ok(view),
