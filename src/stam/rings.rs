@@ -36,7 +36,7 @@ impl Rings<'_> {
 
     /// Control points, relative to [`limit`](Self::limit). The rest of the patch, u and v up to 2^(1-n), lies in their
     /// convex hull: every finer point is an affine combination of them with weights from 0 to 1.
-    pub fn hull(&self) -> impl Iterator<Item = DVec3> {
+    pub fn hull(&self) -> impl Iterator<Item = DVec3> + Clone {
         self.points.iter().map(|&p| self.scale * p)
     }
 
@@ -45,6 +45,14 @@ impl Rings<'_> {
         let grid: [DVec3; WINDOW_POINTS] = self.table.windows_of(&self.points).map(|p| self.scale * p);
         // The grid lacks its first point.
         WINDOWS.map(|[i, j]| std::array::from_fn(|k| grid[5 * (j + k / 4) + i + k % 4 - 1]))
+    }
+
+    /// The rings of the points that a linear map makes of these, from the level where they are.
+    pub fn mapped(mut self, map: impl Fn(DVec3) -> DVec3) -> Self {
+        for point in &mut self.points {
+            *point = map(*point);
+        }
+        self
     }
 
     /// One level deeper.

@@ -1,16 +1,18 @@
 //! Cuts patches into charts, and solves what is too small for them.
 
 use super::Frame;
+use super::bounds::{Bounds, Seen, seen};
 use super::lens::Lens;
-use super::piece::{Bounds, Piece, Seen, seen};
-use super::solve::{POINT, chart, first_hit};
+use super::piece::Piece;
+use super::solve::{POINT, chart, first_hit, newton};
 use crate::gpu::records::{ChartRecord, SpeckRecord};
 use crate::gpu::tables::PatchNets;
 use crate::stam::{Rings, WINDOWS};
 use glam::DVec3;
+use std::ops::Range;
 
 /// Samples in a piece's bounds up to which they are solved here rather than by the shader.
-const FEW: u32 = 2;
+const FEW: usize = 2;
 /// Longest side of a chart's bounds in samples: larger ones overlap more tiles that they do not cover, and take more steps.
 const LARGEST: f64 = 48.0;
 /// Levels below which nothing straddles the near plane any more: what is left lies on it.
@@ -30,32 +32,35 @@ pub(super) struct Divider<'a> {
     /// Parts that every face is cut into at least, as a level.
     level: u8,
     patch: u32,
-    pieces: Vec<Piece>,
     pub out: Harvest,
 }
 
 impl<'a> Divider<'a> {
     pub fn new(lens: &'a Lens, level: u8) -> Self {
-        Self { lens, level, patch: 0, pieces: Vec::new(), out: Harvest::default() }
+        Self { lens, level, patch: 0, out: Harvest::default() }
     }
 
     /// A patch of refinement levels `levels` along u and v.
     pub fn patch(&mut self, patch: u32, levels: [u8; 2], nets: PatchNets<'_>) {
         self.patch = patch;
         match nets {
-            PatchNets::Regular(net) => {
+            PatchNets::Regular(mut net) => {
                 let owed = levels.map(|own| self.level.saturating_sub(own));
-                self.pieces.push(Piece::new(self.lens, net[5], &net.map(|p| p - net[5]), [0.0; 2], 1.0, owed));
-                self.cut();
+                for point in &mut net {
+                    *point = self.lens.project(*point);
+                }
+                self.cut(&mut Piece::new(&net, [0.0; 2], 1.0, owed));
             }
             PatchNets::Irregular(rings) => self.irregular(levels, rings),
         }
     }
 
-    fn irregular(&mut self, levels: [u8; 2], mut rings: Rings<'_>) {
-        let limit = rings.limit();
+    fn irregular(&mut self, levels: [u8; 2], rings: Rings<'_>) {
+        let limit = self.lens.project(rings.limit());
+        // Rings are linear in their points.
+        let mut rings = rings.mapped(|p| self.lens.turn(p));
         loop {
-            match seen(self.lens, rings.hull().map(|p| self.lens.project(limit, p).map(|x| [x]))) {
+            match seen(self.lens, rings.hull().map(|p| limit + p)) {
                 Seen::No => return,
                 Seen::Straddles if rings.level() > DEEPEST => return,
                 Seen::Straddles => (),
@@ -73,49 +78,46 @@ impl<'a> Divider<'a> {
             let level = rings.level();
             let size = 0.5f64.powi(level as i32);
             let owed = levels.map(|own| self.level.saturating_sub(own).saturating_sub(level.min(255) as u8));
-            for ([i, j], net) in WINDOWS.into_iter().zip(rings.windows()) {
-                let origin = [i as f64 * size, j as f64 * size];
-                self.pieces.push(Piece::new(self.lens, limit, &net, origin, size, owed));
+            for ([i, j], mut net) in WINDOWS.into_iter().zip(rings.windows()) {
+                for point in &mut net {
+                    *point += limit;
+                }
+                self.cut(&mut Piece::new(&net, [i as f64 * size, j as f64 * size], size, owed));
             }
-            self.cut();
             rings.descend();
         }
     }
 
     /// Cuts until everything is a chart, solved, or out of sight.
-    fn cut(&mut self) {
-        while let Some(piece) = self.pieces.pop() {
-            let seen = piece.seen(self.lens);
-            match seen {
-                Seen::No => continue,
-                Seen::Straddles if piece.size[0].min(piece.size[1]) < 0.5f64.powi(DEEPEST as i32) => continue,
-                Seen::Straddles => (),
-                Seen::Within(bounds) => {
-                    let samples = bounds.samples(self.lens);
-                    let count: u32 = samples.iter().map(|range| range.end - range.start).product();
-                    if count == 0 {
-                        continue;
-                    }
-                    if count <= FEW {
-                        self.solve(&piece, &bounds);
-                        continue;
-                    }
-                    if piece.owed == [0; 2]
-                        && bounds.extent() <= LARGEST
-                        && let Some(frame) = chart(self.lens, &piece, &bounds)
-                    {
-                        self.chart(&piece, &frame);
-                        continue;
-                    }
+    fn cut(&mut self, piece: &mut Piece) {
+        let mut along_v = match piece.seen(self.lens) {
+            Seen::No => return,
+            Seen::Straddles if piece.size[0].min(piece.size[1]) < 0.5f64.powi(DEEPEST as i32) => return,
+            Seen::Straddles => piece.size[1] > piece.size[0],
+            Seen::Within(bounds) => {
+                let samples = bounds.samples(self.lens);
+                let count = samples[0].len() * samples[1].len();
+                if count == 0 {
+                    return;
                 }
+                if count <= FEW {
+                    return self.solve(piece, &bounds, samples);
+                }
+                if piece.owed == [0; 2]
+                    && bounds.extent() <= LARGEST
+                    && let Some(frame) = chart(self.lens, piece, &bounds)
+                {
+                    return self.chart(piece, &frame);
+                }
+                piece.longer_along_v(self.lens)
             }
-            let along_v = match (piece.owed, seen) {
-                ([0, 0], Seen::Within(_)) => piece.longer_along_v(self.lens),
-                ([0, 0], _) => piece.size[1] > piece.size[0],
-                ([u, v], _) => v > u,
-            };
-            self.pieces.extend(piece.split(along_v));
+        };
+        if piece.owed != [0; 2] {
+            along_v = piece.owed[1] > piece.owed[0];
         }
+        let mut upper = piece.split(along_v);
+        self.cut(piece);
+        self.cut(&mut upper);
     }
 
     fn chart(&mut self, piece: &Piece, frame: &Frame) {
@@ -131,11 +133,15 @@ impl<'a> Divider<'a> {
         });
     }
 
-    fn solve(&mut self, piece: &Piece, bounds: &Bounds) {
-        let [columns, rows] = bounds.samples(self.lens);
+    fn solve(&mut self, piece: &Piece, bounds: &Bounds, [columns, rows]: [Range<u32>; 2]) {
+        let frame = chart(self.lens, piece, bounds);
         for (x, y) in rows.flat_map(|y| columns.clone().map(move |x| (x, y))) {
             let p = [x, y].map(|k| f64::from(k) + 0.5);
-            if let Some(hit) = first_hit(self.lens, piece, bounds, p) {
+            let hit = match &frame {
+                Some(frame) => newton(self.lens, piece, frame, p),
+                None => first_hit(self.lens, piece, p),
+            };
+            if let Some(hit) = hit {
                 self.speck([x, y], hit.uv, hit.depth);
             }
         }
@@ -151,7 +157,11 @@ impl<'a> Divider<'a> {
 pub(super) fn sees_box(lens: &Lens, [low, high]: [DVec3; 2]) -> bool {
     let corner = |i: usize| {
         let pick = |bit: usize, a: f64, b: f64| if i >> bit & 1 == 0 { a } else { b };
-        DVec3::new(pick(0, low.x, high.x), pick(1, low.y, high.y), pick(2, low.z, high.z))
+        lens.project(DVec3::new(pick(0, low.x, high.x), pick(1, low.y, high.y), pick(2, low.z, high.z)))
     };
-    seen(lens, (0..8).map(|i| lens.project(corner(i), DVec3::ZERO).map(|x| [x]))) != Seen::No
+    match seen(lens, (0..8).map(corner)) {
+        Seen::No => false,
+        Seen::Straddles => true,
+        Seen::Within(bounds) => bounds.samples(lens).iter().all(|range| !range.is_empty()),
+    }
 }

@@ -1,5 +1,6 @@
 //! From the world to homogeneous sample coordinates, in f64.
 
+use super::net::{Row, row};
 use crate::field::Axes;
 use crate::gpu::View;
 use crate::gpu::records::LensRecord;
@@ -12,8 +13,8 @@ pub(super) struct Lens {
     eye: DVec3,
     /// Rows of x and y times weight, and of the depth.
     rows: [DVec3; 3],
-    /// Constants of x and y, times weight.
-    shift: [f64; 2],
+    /// What the eye is projected to.
+    shift: DVec3,
     /// The weight is the depth; else it is 1.
     pub perspective: bool,
     /// Depth below which nothing is seen, and that of the farthest point.
@@ -31,28 +32,46 @@ impl Lens {
         let [width, height] = camera.size.map(|n| 0.5 * f64::from(n * tile.samples));
         let [x, y] = tile.origin.map(f64::from);
         let [near, far] = camera.depth_range(bounds);
+        let perspective = !camera.is_orthographic();
+        let shift = [width - x, height - y];
+        let mut rows = [right * (scale[0] * width), up * (-scale[1] * height), forward];
+        if perspective {
+            // The weight is the depth.
+            rows[0] += shift[0] * forward;
+            rows[1] += shift[1] * forward;
+        }
         Lens {
             eye: camera.eye,
-            rows: [right * (scale[0] * width), up * (-scale[1] * height), forward],
-            shift: [width - x, height - y],
-            perspective: !camera.is_orthographic(),
+            rows,
+            shift: if perspective { DVec3::ZERO } else { DVec3::new(shift[0], shift[1], 0.0) },
+            perspective,
             near,
             far,
             size: tile.size.map(f64::from),
         }
     }
 
-    /// x and y times weight, and depth, of a point given relative to `origin`.
-    pub fn project(&self, origin: DVec3, point: DVec3) -> [f64; 3] {
-        let d = (origin - self.eye) + point;
-        let [x, y, depth] = self.rows.map(|row| row.dot(d));
-        let weight = self.weight(depth);
-        [x + self.shift[0] * weight, y + self.shift[1] * weight, depth]
+    /// x and y times weight, and depth, of a point.
+    pub fn project(&self, point: DVec3) -> DVec3 {
+        self.turn(point - self.eye) + self.shift
+    }
+
+    /// The linear part of [`project`](Self::project).
+    #[inline]
+    pub fn turn(&self, v: DVec3) -> DVec3 {
+        let [x, y, depth] = &self.rows;
+        DVec3::new(x.dot(v), y.dot(v), depth.dot(v))
     }
 
     /// What x and y of a point at this depth are multiplied by.
     pub fn weight(&self, depth: f64) -> f64 {
         if self.perspective { depth } else { 1.0 }
+    }
+
+    /// One over the weights at these depths.
+    #[inline]
+    pub fn inverse_weights(&self, depths: &Row) -> Row {
+        if self.perspective { row(|k| 1.0 / depths[k]) } else { [1.0; 4] }
     }
 
     /// Change of the weight with that of the depth.

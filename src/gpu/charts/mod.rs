@@ -23,8 +23,10 @@
 //! chart as the parallelogram that must hold it, with Newton's method in each fragment (`shaders/charts.wgsl`) and depth from the
 //! point that was found, and what was solved here as points ([`SpeckRecord`]); the depth buffer keeps what is seen first.
 
+mod bounds;
 mod divide;
 mod lens;
+mod net;
 mod piece;
 mod solve;
 

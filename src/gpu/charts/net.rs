@@ -1,0 +1,115 @@
+//! Nets of 4x4 control values, in loops over fixed arrays: they become vectors where closures over arrays do not.
+
+/// Four control values along u.
+pub(super) type Row = [f64; 4];
+/// Rows of v.
+pub(super) type Net = [Row; 4];
+
+/// The larger of two numbers: `f64::max` asks for NaN, which keeps loops from becoming vectors.
+#[inline(always)]
+pub(super) fn max(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+#[inline(always)]
+pub(super) fn min(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// A row of what `value` makes of each column.
+#[inline(always)]
+pub(super) fn row(value: impl Fn(usize) -> f64) -> Row {
+    let mut row = [0.0; 4];
+    for (k, x) in row.iter_mut().enumerate() {
+        *x = value(k);
+    }
+    row
+}
+
+#[inline(always)]
+pub(super) fn dot(a: &Row, b: &Row) -> f64 {
+    (a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3])
+}
+
+/// The sum of the rows of a net, each times its weight.
+#[inline(always)]
+pub(super) fn combined(net: &Net, weights: &Row) -> Row {
+    let [a, b, c, d] = net;
+    row(|k| (a[k] * weights[0] + b[k] * weights[1]) + (c[k] * weights[2] + d[k] * weights[3]))
+}
+
+#[inline(always)]
+pub(super) fn transposed(net: &Net) -> Net {
+    let mut out = [[0.0; 4]; 4];
+    for i in 0..4 {
+        for j in 0..4 {
+            out[i][j] = net[j][i];
+        }
+    }
+    out
+}
+
+/// From a uniform cubic B-spline to Bezier points, across the rows.
+#[inline(always)]
+fn bezier([a, b, c, d]: &Net) -> Net {
+    let sixth = 1.0 / 6.0;
+    let third = 1.0 / 3.0;
+    [
+        row(|k| (a[k] + 4.0 * b[k] + c[k]) * sixth),
+        row(|k| (2.0 * b[k] + c[k]) * third),
+        row(|k| (b[k] + 2.0 * c[k]) * third),
+        row(|k| (b[k] + 4.0 * c[k] + d[k]) * sixth),
+    ]
+}
+
+/// The Bezier net of a uniform bicubic B-spline.
+#[inline]
+pub(super) fn bezier_of_spline(net: &Net) -> Net {
+    transposed(&bezier(&transposed(&bezier(net))))
+}
+
+/// De Casteljau at 1/2, across the rows: leaves the lower half, returns the upper one.
+#[inline(always)]
+fn halve_rows(net: &mut Net) -> Net {
+    let mean = |p: &Row, q: &Row| row(|k| 0.5 * (p[k] + q[k]));
+    let [a, b, c, d] = *net;
+    let (ab, bc, cd) = (mean(&a, &b), mean(&b, &c), mean(&c, &d));
+    let (abc, bcd) = (mean(&ab, &bc), mean(&bc, &cd));
+    let middle = mean(&abc, &bcd);
+    *net = [a, ab, abc, middle];
+    [middle, bcd, cd, d]
+}
+
+/// Leaves the lower half of a Bezier net along u or v, returns the upper one.
+#[inline]
+pub(super) fn halve(net: &mut Net, along_v: bool) -> Net {
+    if along_v {
+        return halve_rows(net);
+    }
+    let mut low = transposed(net);
+    let high = halve_rows(&mut low);
+    *net = transposed(&low);
+    transposed(&high)
+}
+
+/// The largest distance between `mean` and the difference of neighbours across the rows.
+#[inline(always)]
+pub(super) fn unevenness(net: &Net, mean: f64) -> f64 {
+    let mut most = [0.0; 4];
+    for j in 0..3 {
+        for k in 0..4 {
+            most[k] = max(most[k], (net[j + 1][k] - net[j][k] - mean).abs());
+        }
+    }
+    greatest(&most)
+}
+
+#[inline(always)]
+pub(super) fn greatest(values: &Row) -> f64 {
+    max(max(values[0], values[1]), max(values[2], values[3]))
+}
+
+#[inline(always)]
+pub(super) fn least(values: &Row) -> f64 {
+    min(min(values[0], values[1]), min(values[2], values[3]))
+}
