@@ -123,22 +123,29 @@ impl ClassTable {
 
     /// (B / lambda)^(level - 1) C.
     fn stepped(&self, level: usize, points: &[DVec3]) -> Vec<DVec3> {
-        let mut stepped = points.to_vec();
+        let (mut stepped, mut next) = (points.to_vec(), Vec::new());
         for _ in 1..level {
-            stepped = self.stepped_once(&stepped);
+            self.step_once(&stepped, &mut next);
+            std::mem::swap(&mut stepped, &mut next);
         }
         stepped
     }
 
-    /// B / lambda times points.
-    pub(super) fn stepped_once(&self, points: &[DVec3]) -> Vec<DVec3> {
+    /// Makes `next` B / lambda times points.
+    pub(super) fn step_once(&self, points: &[DVec3], next: &mut Vec<DVec3>) {
         let constant = combine(&self.limit, points);
-        self.step.iter().map(|row| (sparse(row, points) - constant) / self.lambda).collect()
+        let over = 1.0 / self.lambda;
+        next.clear();
+        next.extend(self.step.iter().map(|row| (sparse(row, points) - constant) * over));
     }
 
     /// A' times points: those of the three windows.
     pub(super) fn windows_of(&self, points: &[DVec3]) -> [DVec3; WINDOW_POINTS] {
-        std::array::from_fn(|point| sparse(&self.windows[point], points))
+        let mut out = [DVec3::ZERO; WINDOW_POINTS];
+        for (point, row) in out.iter_mut().zip(&self.windows) {
+            *point = sparse(row, points);
+        }
+        out
     }
 
     /// Memory that the matrices take.

@@ -14,7 +14,7 @@ mod surface;
 
 pub use class::{ClassTable, LEVELS, WINDOW_POINTS};
 pub use curvature::Curvature;
-pub use rings::{Rings, WINDOWS};
+pub use rings::{Grid, Rings, WINDOWS};
 pub use surface::{LimitSurface, Net};
 
 use glam::DVec3;

@@ -15,6 +15,8 @@ pub struct Rings<'a> {
     limit: DVec3,
     /// (B / lambda)^(n-1) C, relative to the limit position.
     points: Vec<DVec3>,
+    /// Room for the points of the next level.
+    next: Vec<DVec3>,
     /// lambda^(n-1).
     scale: f64,
     level: u32,
@@ -22,6 +24,18 @@ pub struct Rings<'a> {
 
 /// The windows of a level: window (i,j) spans [i, i+1] x [j, j+1] in units of 2^-n of the patch.
 pub const WINDOWS: [[usize; 2]; 3] = [[1, 0], [1, 1], [0, 1]];
+
+/// The points that control the windows of a level.
+#[derive(Debug, Clone)]
+pub struct Grid([DVec3; WINDOW_POINTS]);
+
+impl Grid {
+    /// Point `k`, 0 to 15, of the B-spline net of window (i,j), u fastest.
+    pub fn point(&self, [i, j]: [usize; 2], k: usize) -> DVec3 {
+        // The grid is 5x5 and lacks its first point.
+        self.0[5 * (j + k / 4) + i + k % 4 - 1]
+    }
+}
 
 impl Rings<'_> {
     /// The level n, from 1: what is left is u and v up to 2^(1-n).
@@ -40,11 +54,13 @@ impl Rings<'_> {
         self.points.iter().map(|&p| self.scale * p)
     }
 
-    /// The B-spline nets of the level's [`WINDOWS`], relative to [`limit`](Self::limit), u fastest.
-    pub fn windows(&self) -> [[DVec3; 16]; 3] {
-        let grid: [DVec3; WINDOW_POINTS] = self.table.windows_of(&self.points).map(|p| self.scale * p);
-        // The grid lacks its first point.
-        WINDOWS.map(|[i, j]| std::array::from_fn(|k| grid[5 * (j + k / 4) + i + k % 4 - 1]))
+    /// The points of the level's [`WINDOWS`], relative to [`limit`](Self::limit).
+    pub fn grid(&self) -> Grid {
+        let mut grid = self.table.windows_of(&self.points);
+        for point in &mut grid {
+            *point *= self.scale;
+        }
+        Grid(grid)
     }
 
     /// The rings of the points that a linear map makes of these, from the level where they are.
@@ -57,7 +73,8 @@ impl Rings<'_> {
 
     /// One level deeper.
     pub fn descend(&mut self) {
-        self.points = self.table.stepped_once(&self.points);
+        self.table.step_once(&self.points, &mut self.next);
+        std::mem::swap(&mut self.points, &mut self.next);
         self.scale *= self.table.lambda;
         self.level += 1;
     }
@@ -68,7 +85,7 @@ impl LimitSurface {
     pub fn rings(&self, patch: usize) -> Option<Rings<'_>> {
         let table = &self.tables()[self.class(patch)?];
         let (points, limit) = self.irregular_net(patch, table);
-        Some(Rings { table, limit, points, scale: 1.0, level: 1 })
+        Some(Rings { table, limit, points, next: Vec::new(), scale: 1.0, level: 1 })
     }
 }
 
@@ -100,8 +117,10 @@ mod tests {
                     assert!((p - low).min_element() >= -slack && (high - p).min_element() >= -slack, "level {n}: {p}");
                 }
                 let scale = lambda.powi(n as i32);
-                for ([i, j], net) in WINDOWS.into_iter().zip(rings.windows()) {
-                    for (k, point) in net.into_iter().enumerate() {
+                let found = rings.grid();
+                for [i, j] in WINDOWS {
+                    let net: [DVec3; 16] = std::array::from_fn(|k| found.point([i, j], k));
+                    for (k, &point) in net.iter().enumerate() {
                         let expected = scale * grid[5 * (j + k / 4) + i + k % 4 - 1];
                         assert!(point.distance(expected) < 1e-12 * scale * size, "level {n}, window {i} {j}");
                     }

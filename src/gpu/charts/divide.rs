@@ -1,10 +1,10 @@
 //! Cuts patches into charts, and solves what is too small for them.
 
-use super::Frame;
-use super::bounds::{Bounds, Seen, seen};
+use super::bounds::{Seen, seen};
+use super::frame::{ChartFrame, Flat};
 use super::lens::Lens;
 use super::piece::Piece;
-use super::solve::{POINT, chart, first_hit, newton};
+use super::solve::{POINT, first_hit, newton};
 use crate::gpu::records::{ChartRecord, SpeckRecord};
 use crate::gpu::tables::PatchNets;
 use crate::stam::{Rings, WINDOWS};
@@ -44,12 +44,9 @@ impl<'a> Divider<'a> {
     pub fn patch(&mut self, patch: u32, levels: [u8; 2], nets: PatchNets<'_>) {
         self.patch = patch;
         match nets {
-            PatchNets::Regular(mut net) => {
+            PatchNets::Regular(net) => {
                 let owed = levels.map(|own| self.level.saturating_sub(own));
-                for point in &mut net {
-                    *point = self.lens.project(*point);
-                }
-                self.cut(&mut Piece::new(&net, [0.0; 2], 1.0, owed));
+                self.cut(&mut Piece::new(|k| self.lens.project(net[k]), [0.0; 2], 1.0, owed));
             }
             PatchNets::Irregular(rings) => self.irregular(levels, rings),
         }
@@ -78,11 +75,10 @@ impl<'a> Divider<'a> {
             let level = rings.level();
             let size = 0.5f64.powi(level as i32);
             let owed = levels.map(|own| self.level.saturating_sub(own).saturating_sub(level.min(255) as u8));
-            for ([i, j], mut net) in WINDOWS.into_iter().zip(rings.windows()) {
-                for point in &mut net {
-                    *point += limit;
-                }
-                self.cut(&mut Piece::new(&net, [i as f64 * size, j as f64 * size], size, owed));
+            let grid = rings.grid();
+            for window in WINDOWS {
+                let origin = window.map(|i| i as f64 * size);
+                self.cut(&mut Piece::new(|k| limit + grid.point(window, k), origin, size, owed));
             }
             rings.descend();
         }
@@ -100,16 +96,19 @@ impl<'a> Divider<'a> {
                 if count == 0 {
                     return;
                 }
-                if count <= FEW {
-                    return self.solve(piece, &bounds, samples);
+                if count > FEW && (piece.owed != [0; 2] || bounds.extent() > LARGEST) {
+                    piece.longer_along_v(self.lens, None)
+                } else {
+                    let flat = piece.flat(self.lens);
+                    let chart = flat.as_ref().and_then(|flat| flat.chart(&bounds));
+                    if count <= FEW {
+                        return self.solve(piece, flat, chart, samples);
+                    }
+                    if let Some(chart) = chart {
+                        return self.chart(piece, &chart);
+                    }
+                    piece.longer_along_v(self.lens, flat.as_ref())
                 }
-                if piece.owed == [0; 2]
-                    && bounds.extent() <= LARGEST
-                    && let Some(frame) = chart(self.lens, piece, &bounds)
-                {
-                    return self.chart(piece, &frame);
-                }
-                piece.longer_along_v(self.lens)
             }
         };
         if piece.owed != [0; 2] {
@@ -120,26 +119,32 @@ impl<'a> Divider<'a> {
         self.cut(&mut upper);
     }
 
-    fn chart(&mut self, piece: &Piece, frame: &Frame) {
+    fn chart(&mut self, piece: &Piece, ChartFrame { frame, half }: &ChartFrame) {
         let [x, y, depth] = [frame.centre[0], frame.centre[1], frame.depth].map(|x| (x as f32).to_bits());
         let row = |values: [f64; 4]| values.map(|x| x as f32);
         let [[a, b], [c, d]] = frame.inverse;
         self.out.charts.push(ChartRecord {
             id: [self.patch + 1, x, y, depth],
             inverse: row([a, b, c, d]),
-            start: row([frame.start[0], frame.start[1], frame.half(), 0.0]),
+            start: row([frame.start[0], frame.start[1], *half, 0.0]),
             place: row([piece.origin[0], piece.origin[1], piece.size[0], piece.size[1]]),
             net: piece.relative_to(self.lens, frame),
         });
     }
 
-    fn solve(&mut self, piece: &Piece, bounds: &Bounds, [columns, rows]: [Range<u32>; 2]) {
-        let frame = chart(self.lens, piece, bounds);
+    fn solve(
+        &mut self,
+        piece: &Piece,
+        flat: Option<Flat>,
+        chart: Option<ChartFrame>,
+        [columns, rows]: [Range<u32>; 2],
+    ) {
         for (x, y) in rows.flat_map(|y| columns.clone().map(move |x| (x, y))) {
             let p = [x, y].map(|k| f64::from(k) + 0.5);
-            let hit = match &frame {
-                Some(frame) => newton(self.lens, piece, frame, p),
-                None => first_hit(self.lens, piece, p),
+            let hit = match (&chart, &flat) {
+                (Some(chart), _) => newton(self.lens, piece, chart, p),
+                (None, Some(flat)) if flat.misses(p) => None,
+                (None, flat) => first_hit(self.lens, piece, flat.as_ref(), p),
             };
             if let Some(hit) = hit {
                 self.speck([x, y], hit.uv, hit.depth);

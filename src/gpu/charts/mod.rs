@@ -25,6 +25,7 @@
 
 mod bounds;
 mod divide;
+mod frame;
 mod lens;
 mod net;
 mod piece;
@@ -44,32 +45,6 @@ pub(super) const BAND: f64 = 2e-4;
 
 /// q up to which a piece is a chart: Newton's error shrinks to a half at least each step, in practice quadratically.
 const MAX_DISTORTION: f64 = 0.3;
-
-/// How the projection of a piece looks from its middle.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Frame {
-    /// Sample coordinates near the middle, exact in f32.
-    centre: [f64; 2],
-    /// Depth in the middle.
-    depth: f64,
-    /// Weight in the middle: the depth in perspective, else 1.
-    weight: f64,
-    /// J0^-1.
-    inverse: [[f64; 2]; 2],
-    /// (u,v) that the linear map gives `centre`.
-    start: [f64; 2],
-    /// q.
-    distortion: f64,
-}
-
-impl Frame {
-    /// Half the side of the square round (1/2, 1/2) in which the linear map sees every sample that the chart covers: it errs
-    /// by q times the distance from the middle. And a thousandth more, for the rounding of the parallelogram's corners.
-    fn half(&self) -> f64 {
-        let band = self.inverse.iter().map(|[a, b]| BAND * (a.abs() + b.abs())).fold(0.0, f64::max);
-        0.501 * (1.0 + self.distortion) + 2.0 * band
-    }
-}
 
 /// Everything that the samples of a tile may see.
 #[derive(Debug)]

@@ -1,9 +1,9 @@
 //! A rectangle of a patch as a projected Bezier net: bounds, halves, and how much its projection distorts.
 
-use super::bounds::{Bounds, Seen, seen_net};
+use super::bounds::{Seen, seen_net};
+use super::frame::{Flat, Frame};
 use super::lens::Lens;
-use super::net::{Net, Row, bezier_of_spline, combined, dot, greatest, halve, max, row, transposed, unevenness};
-use super::{BAND, Frame};
+use super::net::{Net, Row, bezier_of_spline, combined, dot, greatest, halve, row};
 use glam::DVec3;
 
 /// A bicubic piece of the surface, projected.
@@ -21,9 +21,11 @@ pub(super) struct Piece {
 
 impl Piece {
     /// Of a projected uniform bicubic B-spline net, u fastest.
-    pub fn new(spline: &[DVec3; 16], origin: [f64; 2], size: f64, owed: [u8; 2]) -> Piece {
+    #[inline]
+    pub fn new(spline: impl Fn(usize) -> DVec3, origin: [f64; 2], size: f64, owed: [u8; 2]) -> Piece {
         let mut net = [[[0.0; 4]; 4]; 3];
-        for (k, point) in spline.iter().enumerate() {
+        for k in 0..16 {
+            let point = spline(k);
             net[0][k / 4][k % 4] = point.x;
             net[1][k / 4][k % 4] = point.y;
             net[2][k / 4][k % 4] = point.z;
@@ -38,9 +40,12 @@ impl Piece {
         seen_net(lens, &self.net)
     }
 
-    /// Whether a piece beyond the near plane is longer along v: by the lengths of its projected control polygons, in city
-    /// blocks.
-    pub fn longer_along_v(&self, lens: &Lens) -> bool {
+    /// Whether a piece beyond the near plane is longer along v in the picture, in city blocks: in its middle, or where nothing is
+    /// known of that, by its control polygons.
+    pub fn longer_along_v(&self, lens: &Lens, flat: Option<&Flat>) -> bool {
+        if let Some(flat) = flat {
+            return flat.frame.longer_along_v;
+        }
         let (mut along_u, mut along_v) = ([0.0; 4], [0.0; 4]);
         let [x, y, depth] = &self.net;
         let mut inverse = [[0.0; 4]; 4];
@@ -75,62 +80,9 @@ impl Piece {
     }
 
     /// How the projection looks from the middle of the piece; `None` where it is singular there.
-    ///
-    /// With J the derivative of (x,y) - p weight by the piece's own u and v, at any of its points and for any sample p in its
-    /// bounds, and J0 that in the middle for the sample there, `distortion` bounds the maximum norm of J0^-1 J - 1: derivative
-    /// nets are convex combinations of their control vectors.
-    pub fn frame(&self, lens: &Lens, bounds: &Bounds) -> Option<Frame> {
-        let middle = self.middle();
-        let weight = lens.weight(middle.value[2]);
-        let scale = 1.0 / weight;
-        // Sixteenths: exact in f32 over every tile.
-        let centre = [0, 1].map(|k| f64::from((middle.value[k] * scale * 16.0) as i32) / 16.0);
-        let relative = |d: [f64; 3]| {
-            let change = lens.weight_change(d[2]) * scale;
-            [d[0] * scale - centre[0] * change, d[1] * scale - centre[1] * change]
-        };
-        let (du, dv) = (relative(middle.du), relative(middle.dv));
-        let determinant = du[0] * dv[1] - du[1] * dv[0];
-        // Squares of the product of lengths and, relative to it, of the sine of the angle: thinner parallelograms would lose digits
-        // in f32.
-        let lengths = (du[0] * du[0] + du[1] * du[1]) * (dv[0] * dv[0] + dv[1] * dv[1]);
-        if determinant * determinant <= 1e-6 * lengths {
-            return None;
-        }
-        let over = 1.0 / determinant;
-        let inverse = [[dv[1] * over, -dv[0] * over], [-du[1] * over, du[0] * over]];
-        let reach = [0, 1].map(|k| max(bounds.high[k] - centre[k], centre[k] - bounds.low[k]) + BAND);
-        let distortion = self.distortion(lens, centre, scale, &inverse, reach);
-        let offset = [0, 1].map(|k| middle.value[k] * scale - centre[k]);
-        let start = [0, 1].map(|row: usize| 0.5 - inverse[row][0] * offset[0] - inverse[row][1] * offset[1]);
-        Some(Frame { centre, depth: middle.value[2], weight, inverse, start, distortion })
-    }
-
-    /// q, for samples within `reach` of `centre`.
-    #[inline(always)]
-    fn distortion(&self, lens: &Lens, centre: [f64; 2], scale: f64, inverse: &[[f64; 2]; 2], reach: [f64; 2]) -> f64 {
-        let [x, y, depth] = &self.net;
-        let mut change = [[0.0; 4]; 4];
-        // The net as the inverse of the linear map sees it: there each of (u,v) grows by a third from control value to control
-        // value along itself, and not at all along the other.
-        let mut flat = [[[0.0; 4]; 4]; 2];
-        for j in 0..4 {
-            change[j] = row(|i| lens.weight_change(depth[j][i]) * scale);
-            let [x, y] =
-                [(x, centre[0]), (y, centre[1])].map(|(net, at)| row(|i| net[j][i] * scale - at * change[j][i]));
-            for (flat, [a, b]) in flat.iter_mut().zip(inverse) {
-                flat[j] = row(|i| a * x[i] + b * y[i]);
-            }
-        }
-        let change_over = 3.0 * (unevenness(&change, 0.0) + unevenness(&transposed(&change), 0.0));
-        let mut distortion = 0.0;
-        for (axis, net) in flat.iter().enumerate() {
-            let [along_u, along_v] = [[1.0 / 3.0, 0.0], [0.0, 1.0 / 3.0]][axis];
-            let deviation = 3.0 * (unevenness(&transposed(net), along_u) + unevenness(net, along_v));
-            let slack = change_over * (inverse[axis][0].abs() * reach[0] + inverse[axis][1].abs() * reach[1]);
-            distortion = max(distortion, deviation + slack);
-        }
-        distortion
+    #[inline]
+    pub fn flat(&self, lens: &Lens) -> Option<Flat> {
+        Frame::new(lens, &self.middle()).map(|frame| Flat::new(lens, frame, &self.net))
     }
 
     /// The net relative to a frame, as charts hold it: x and y relative to the frame's centre, and depth relative to its own.

@@ -1,9 +1,10 @@
 //! One sample on one piece, in f64: for what is smaller than a few samples, and for silhouettes.
 
+use super::BAND;
 use super::bounds::{Bounds, Seen};
+use super::frame::{ChartFrame, Flat};
 use super::lens::Lens;
 use super::piece::Piece;
-use super::{BAND, Frame, MAX_DISTORTION};
 
 /// A point of the surface that a sample sees.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,16 +19,11 @@ const DEEPEST: u32 = 96;
 /// Samples that a piece may span and be a point: a fifth of the 0.01 pixel within which silhouettes are to be right.
 pub(super) const POINT: f64 = 2e-4;
 
-/// The frame of a piece, if it is a chart.
-pub(super) fn chart(lens: &Lens, piece: &Piece, bounds: &Bounds) -> Option<Frame> {
-    piece.frame(lens, bounds).filter(|frame| frame.distortion < MAX_DISTORTION)
-}
-
-/// The first point of a piece that the sample at `p` sees, where its projection is no chart: by halving, until it is one. Within
-/// [`BAND`] of the piece's border, the border is seen.
-pub(super) fn first_hit(lens: &Lens, piece: &Piece, p: [f64; 2]) -> Option<Hit> {
+/// The first point of a piece that the sample at `p` sees, by halving down to charts. Within [`BAND`] of the piece's border,
+/// the border is seen.
+pub(super) fn first_hit(lens: &Lens, piece: &Piece, flat: Option<&Flat>, p: [f64; 2]) -> Option<Hit> {
     let mut search = Search { lens, p, first: None };
-    search.halves(&mut piece.clone(), true, 0);
+    search.halves(&mut piece.clone(), flat, 0);
     search.first
 }
 
@@ -40,29 +36,35 @@ struct Search<'a> {
 
 impl Search<'_> {
     fn piece(&mut self, piece: &mut Piece, depth: u32) {
-        let seen = piece.seen(self.lens);
-        match seen {
-            Seen::No => return,
-            Seen::Within(bounds) => {
-                if !bounds.contains(self.p) || self.first.is_some_and(|first| first.depth <= bounds.near) {
-                    return;
-                }
-                if bounds.extent() < POINT || depth == DEEPEST {
-                    return self.keep(Hit { uv: piece.to_patch([0.5; 2]), depth: bounds.near });
-                }
-                if let Some(frame) = chart(self.lens, piece, &bounds) {
-                    return newton(self.lens, piece, &frame, self.p).into_iter().for_each(|hit| self.keep(hit));
-                }
-            }
-            Seen::Straddles if depth == DEEPEST => return,
-            Seen::Straddles => (),
+        match piece.seen(self.lens) {
+            Seen::No => (),
+            Seen::Straddles if depth == DEEPEST => (),
+            Seen::Straddles => self.halves(piece, None, depth),
+            Seen::Within(bounds) => self.within(piece, &bounds, depth),
         }
-        self.halves(piece, matches!(seen, Seen::Within(_)), depth);
     }
 
-    fn halves(&mut self, piece: &mut Piece, within: bool, depth: u32) {
-        let along_v = if within { piece.longer_along_v(self.lens) } else { piece.size[1] > piece.size[0] };
-        let mut upper = piece.split(along_v);
+    fn within(&mut self, piece: &mut Piece, bounds: &Bounds, depth: u32) {
+        if !bounds.contains(self.p) || self.first.is_some_and(|first| first.depth <= bounds.near) {
+            return;
+        }
+        if bounds.extent() < POINT || depth == DEEPEST {
+            return self.keep(Hit { uv: piece.to_patch([0.5; 2]), depth: bounds.near });
+        }
+        let flat = piece.flat(self.lens);
+        if let Some(flat) = &flat {
+            if flat.misses(self.p) {
+                return;
+            }
+            if let Some(chart) = flat.chart(bounds) {
+                return newton(self.lens, piece, &chart, self.p).into_iter().for_each(|hit| self.keep(hit));
+            }
+        }
+        self.halves(piece, flat.as_ref(), depth);
+    }
+
+    fn halves(&mut self, piece: &mut Piece, flat: Option<&Flat>, depth: u32) {
+        let mut upper = piece.split(piece.longer_along_v(self.lens, flat));
         self.piece(&mut upper, depth + 1);
         self.piece(piece, depth + 1);
     }
@@ -74,15 +76,14 @@ impl Search<'_> {
     }
 }
 
-/// Newton's method on a chart, kept inside the piece. It contracts: see [`MAX_DISTORTION`].
-pub(super) fn newton(lens: &Lens, piece: &Piece, frame: &Frame, p: [f64; 2]) -> Option<Hit> {
+/// Newton's method on a chart, kept inside the piece. It contracts: see [`MAX_DISTORTION`](super::MAX_DISTORTION).
+pub(super) fn newton(lens: &Lens, piece: &Piece, chart: &ChartFrame, p: [f64; 2]) -> Option<Hit> {
     /// Samples by which the last step may move.
     const SETTLED: f64 = 1e-7;
     const STEPS: usize = 64;
-    let d = [p[0] - frame.centre[0], p[1] - frame.centre[1]];
-    let guess = [0, 1].map(|k| frame.start[k] + frame.inverse[k][0] * d[0] + frame.inverse[k][1] * d[1]);
-    let half = frame.half();
-    if guess.iter().any(|x| (x - 0.5).abs() > half) {
+    let (flat, start) = (chart.frame.flat(p), chart.frame.start);
+    let guess = [start[0] + flat[0], start[1] + flat[1]];
+    if guess.iter().any(|x| (x - 0.5).abs() > chart.half) {
         return None;
     }
     let clamp = |uv: [f64; 2]| uv.map(|x| x.clamp(0.0, 1.0));
