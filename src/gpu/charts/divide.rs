@@ -1,9 +1,9 @@
 //! Cuts patches into charts, and solves what is too small for them.
 
-use super::Frame;
 use super::lens::Lens;
-use super::piece::{Bounds, Piece, Seen, seen};
+use super::piece::{Bounds, Line, Piece, Seen, seen};
 use super::solve::{POINT, chart, first_hit};
+use super::{BAND, Frame};
 use crate::gpu::records::{ChartRecord, SpeckRecord};
 use crate::gpu::tables::PatchNets;
 use crate::stam::{Rings, WINDOWS};
@@ -101,7 +101,7 @@ impl<'a> Divider<'a> {
                         continue;
                     }
                     if count <= FEW {
-                        self.solve(&piece, &bounds);
+                        self.solve(&piece, &bounds, None);
                         continue;
                     }
                     if piece.owed == [0; 2]
@@ -109,6 +109,11 @@ impl<'a> Divider<'a> {
                         && let Some(frame) = chart(self.lens, &piece, &bounds)
                     {
                         self.chart(&piece, &frame);
+                        continue;
+                    }
+                    // Cutting a piece that is seen edge on would only give more that see the same samples.
+                    if let Some(line) = piece.line(self.lens) {
+                        self.solve(&piece, &bounds, Some(line));
                         continue;
                     }
                 }
@@ -135,10 +140,14 @@ impl<'a> Divider<'a> {
         });
     }
 
-    fn solve(&mut self, piece: &Piece, bounds: &Bounds) {
+    /// Solves all samples in a piece's bounds; those near the line, if it is seen as one.
+    fn solve(&mut self, piece: &Piece, bounds: &Bounds, line: Option<Line>) {
         let [columns, rows] = bounds.samples(self.lens);
         for (x, y) in rows.flat_map(|y| columns.clone().map(move |x| (x, y))) {
             let p = [x, y].map(|k| f64::from(k) + 0.5);
+            if line.is_some_and(|line| line.distance(p) > POINT + BAND) {
+                continue;
+            }
             if let Some(hit) = first_hit(self.lens, piece, bounds, p) {
                 self.speck([x, y], hit.uv, hit.depth);
             }

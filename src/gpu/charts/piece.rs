@@ -1,6 +1,7 @@
 //! A rectangle of a patch as a projected Bezier net: bounds, halves, and how much its projection distorts.
 
 use super::lens::Lens;
+use super::solve::POINT;
 use super::{BAND, Frame};
 use glam::DVec3;
 
@@ -57,6 +58,20 @@ impl Bounds {
     /// Longest side.
     pub fn extent(&self) -> f64 {
         (self.high[0] - self.low[0]).max(self.high[1] - self.low[1])
+    }
+}
+
+/// A line in the picture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Line {
+    through: [f64; 2],
+    /// Unit vector across it.
+    across: [f64; 2],
+}
+
+impl Line {
+    pub fn distance(&self, [x, y]: [f64; 2]) -> f64 {
+        ((x - self.through[0]) * self.across[0] + (y - self.through[1]) * self.across[1]).abs()
     }
 }
 
@@ -164,6 +179,32 @@ impl Piece {
         }
         let [along_u, along_v] = lengths.map(|lengths| lengths.into_iter().fold(0.0, max));
         along_v > along_u
+    }
+
+    /// The line that the piece is seen as, if its projected hull is nowhere wider than [`POINT`].
+    pub fn line(&self, lens: &Lens) -> Option<Line> {
+        let seen = |k: usize| {
+            let inverse = 1.0 / lens.weight(self.net[2][k / 4][k % 4]);
+            [self.net[0][k / 4][k % 4] * inverse, self.net[1][k / 4][k % 4] * inverse]
+        };
+        let along = |k: usize, [x, y]: [f64; 2]| {
+            let p = seen(k);
+            (p[0] - x).abs() + (p[1] - y).abs()
+        };
+        let farthest = |from: [f64; 2]| {
+            let far = (0..16).fold((0, 0.0), |(best, most), k| match along(k, from) {
+                length if length > most => (k, length),
+                _ => (best, most),
+            });
+            seen(far.0)
+        };
+        let through = farthest(seen(0));
+        let to = farthest(through);
+        let d = [to[0] - through[0], to[1] - through[1]];
+        let length = (d[0] * d[0] + d[1] * d[1]).sqrt();
+        let line = Line { through, across: [-d[1] / length, d[0] / length] };
+        let thin = (0..16).all(|k| line.distance(seen(k)) < 0.5 * POINT);
+        thin.then_some(line)
     }
 
     /// The lower and the upper half along u or v.

@@ -24,9 +24,9 @@ pub(super) fn first_hit(lens: &Lens, piece: &Piece, bounds: &Bounds, p: [f64; 2]
         return newton(lens, piece, &frame, p).filter(|hit| hit.depth >= lens.near);
     }
     let mut first: Option<Hit> = None;
-    let mut keep = |hit: Hit| {
+    let keep = |first: &mut Option<Hit>, hit: Hit| {
         if hit.depth >= lens.near && first.is_none_or(|first| hit.depth < first.depth) {
-            first = Some(hit);
+            *first = Some(hit);
         }
     };
     let mut stack = vec![(piece.clone(), Seen::Within(*bounds), 0)];
@@ -34,15 +34,15 @@ pub(super) fn first_hit(lens: &Lens, piece: &Piece, bounds: &Bounds, p: [f64; 2]
         match seen {
             Seen::No => continue,
             Seen::Within(bounds) => {
-                if !bounds.contains(p) {
+                if !bounds.contains(p) || first.is_some_and(|first| first.depth <= bounds.near) {
                     continue;
                 }
                 if bounds.extent() < POINT || depth == DEEPEST {
-                    keep(Hit { uv: piece.to_patch([0.5; 2]), depth: bounds.near });
+                    keep(&mut first, Hit { uv: piece.to_patch([0.5; 2]), depth: bounds.near });
                     continue;
                 }
                 if let Some(frame) = chart(lens, &piece, &bounds) {
-                    newton(lens, &piece, &frame, p).into_iter().for_each(&mut keep);
+                    newton(lens, &piece, &frame, p).into_iter().for_each(|hit| keep(&mut first, hit));
                     continue;
                 }
             }
@@ -53,12 +53,24 @@ pub(super) fn first_hit(lens: &Lens, piece: &Piece, bounds: &Bounds, p: [f64; 2]
             Seen::Within(_) => piece.longer_along_v(lens),
             _ => piece.size[1] > piece.size[0],
         };
-        for half in piece.split(along_v) {
+        let mut halves = piece.split(along_v).map(|half| {
             let seen = half.seen(lens);
-            stack.push((half, seen, depth + 1));
+            (half, seen, depth + 1)
+        });
+        // The nearer one is looked at first: where a piece is seen edge on, all of it lies behind a hit at its near edge.
+        if nearest(&halves[0].1) < nearest(&halves[1].1) {
+            halves.swap(0, 1);
         }
+        stack.extend(halves);
     }
     first
+}
+
+fn nearest(seen: &Seen) -> f64 {
+    match seen {
+        Seen::Within(bounds) => bounds.near,
+        _ => f64::NEG_INFINITY,
+    }
 }
 
 /// The frame of a piece, if it is a chart.
