@@ -3,7 +3,7 @@
 use super::args::{size, vector};
 use super::{Failure, load, progress};
 use crate::field::{DEFAULT_FOV, Light, Pattern, Picture, Scout};
-use crate::gpu::{Gpu, MAX_PROXY_LEVEL, MAX_SAMPLES, Pipeline, TableLayout, View, tables};
+use crate::gpu::{Gpu, MAX_ENLARGE, MAX_PROXY_LEVEL, MAX_SAMPLES, Pipeline, TableLayout, View, tables};
 use crate::output::{check_writable, write_png};
 use crate::stam::LimitSurface;
 use clap::{Args, ValueEnum};
@@ -27,9 +27,12 @@ pub(super) struct RenderArgs {
     /// Shape of the lights: stripes, lattice, circles, or a picture
     #[arg(long, value_name = "stripes|lattice|circles|FILE.png", default_value = "stripes")]
     pattern: String,
-    /// Exact limit at every pixel, or interpolated from the proxy's vertices
+    /// Exact limit at every pixel; interpolated from the proxy's vertices; or points at exact positions
     #[arg(long, value_enum, default_value = "limit")]
     pipeline: PipelineName,
+    /// Fragments a sample each way of `--pipeline points`, 1 to 8: against its gaps [default: 1]
+    #[arg(long, value_name = "F", value_parser = enlargement)]
+    enlarge: Option<f64>,
     /// How the tables of irregular patches are stored: auto, expanded, compact or hybrid
     #[arg(long = "tables", value_name = "LAYOUT", default_value_t)]
     layout: TableLayout,
@@ -84,10 +87,17 @@ enum FieldName {
 enum PipelineName {
     Limit,
     Polygon,
+    /// Yasui & Kanai's own
+    Points,
 }
 
 fn positive(text: &str) -> Result<f64, String> {
     text.parse().ok().filter(|x: &f64| *x > 0.0 && x.is_finite()).ok_or("give a number above 0".to_owned())
+}
+
+fn enlargement(text: &str) -> Result<f64, String> {
+    let factor = text.parse().ok().filter(|x| (1.0..=MAX_ENLARGE).contains(x));
+    factor.ok_or_else(|| format!("give a number from 1 to {MAX_ENLARGE}"))
 }
 
 fn fov(text: &str) -> Result<f64, String> {
@@ -126,6 +136,9 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
         )));
     }
     check_writable(&args.output)?;
+    if args.enlarge.is_some() && !matches!(args.pipeline, PipelineName::Points) {
+        return Err(Failure::Bad("--enlarge is for --pipeline points; leave it out, or choose that one".to_owned()));
+    }
     let pattern = pattern(args)?;
     let bar = progress("drawing".to_owned());
     let mesh = clock.time("read", || load(args.mesh.as_deref()))?;
@@ -198,7 +211,9 @@ fn view(args: &RenderArgs, scout: &Scout, pattern: Pattern) -> Result<View, Fail
     view.pipeline = match args.pipeline {
         PipelineName::Limit => Pipeline::Limit,
         PipelineName::Polygon => Pipeline::Polygon,
+        PipelineName::Points => Pipeline::Points,
     };
+    view.enlarge = args.enlarge.unwrap_or(view.enlarge);
     match args.field {
         FieldName::Reflection => Ok(view),
     }

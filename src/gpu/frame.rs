@@ -3,7 +3,7 @@
 use super::device::Device;
 use super::passes::{self, Passes, PictureTargets, Scene, SurfaceTargets, Visible};
 use super::view::{Tile, View};
-use super::{GpuError, Pipeline, Tables};
+use super::{GpuError, Pipeline, Tables, paper};
 use glam::{DVec2, DVec3, Vec3};
 use std::time::{Duration, Instant};
 
@@ -18,7 +18,7 @@ pub struct Timings {
 }
 
 impl Timings {
-    fn time<R>(&mut self, name: &'static str, step: impl FnOnce() -> R) -> R {
+    pub(super) fn time<R>(&mut self, name: &'static str, step: impl FnOnce() -> R) -> R {
         let start = Instant::now();
         let result = step();
         let elapsed = start.elapsed();
@@ -60,8 +60,27 @@ pub struct SurfaceImage {
     pub timings: Timings,
 }
 
+impl SurfaceImage {
+    /// No surface anywhere.
+    pub(super) fn empty(size: [u32; 2]) -> SurfaceImage {
+        let count = size[0] as usize * size[1] as usize;
+        SurfaceImage {
+            size,
+            patch: vec![NO_PATCH; count],
+            uv: vec![[0.0; 2]; count],
+            position: vec![DVec3::ZERO; count],
+            normal: vec![[0.0; 3]; count],
+            field: vec![None; count],
+            timings: Timings::default(),
+        }
+    }
+}
+
 pub(super) fn render(device: &Device, passes: &Passes, tables: &Tables, view: &View) -> Result<Frame, GpuError> {
     view.check()?;
+    if view.pipeline == Pipeline::Points {
+        return paper::render(device, passes, tables, view);
+    }
     let mut timings = Timings::default();
     timings.time("compile", || passes.prepare(device, view.pipeline));
     let scene = timings.time("scene", || Scene::new(device, tables, view))?;
@@ -88,19 +107,13 @@ pub(super) fn inspect(
     view: &View,
 ) -> Result<SurfaceImage, GpuError> {
     view.check()?;
+    if view.pipeline == Pipeline::Points {
+        return paper::inspect(device, passes, tables, view);
+    }
     let mut timings = Timings::default();
     let scene = timings.time("scene", || Scene::new(device, tables, view))?;
     let size = view.camera.size;
-    let count = size[0] as usize * size[1] as usize;
-    let mut image = SurfaceImage {
-        size,
-        patch: vec![NO_PATCH; count],
-        uv: vec![[0.0; 2]; count],
-        position: vec![DVec3::ZERO; count],
-        normal: vec![[0.0; 3]; count],
-        field: vec![None; count],
-        timings: Timings::default(),
-    };
+    let mut image = SurfaceImage::empty(size);
     for tile in Tile::cover(size, 1, Tile::SURFACE_SIDE) {
         let visible = Visible::new(device, &tile, view.pipeline);
         let surface = SurfaceTargets::new(device, &tile);
@@ -114,13 +127,13 @@ pub(super) fn inspect(
 
 fn limit_step(view: &View) -> &'static str {
     match view.pipeline {
-        Pipeline::Limit => "limit",
+        Pipeline::Limit | Pipeline::Points => "limit",
         Pipeline::Polygon => "polygon",
     }
 }
 
 /// Reads one tile into the image of the whole picture, a texture at a time.
-fn read_tile(
+pub(super) fn read_tile(
     device: &Device,
     tables: &Tables,
     visible: &Visible,

@@ -16,6 +16,7 @@
 mod blocks;
 mod device;
 mod frame;
+mod paper;
 mod passes;
 mod proxy;
 pub mod records;
@@ -26,7 +27,7 @@ mod view;
 pub use device::AdapterChoice;
 pub use frame::{Frame, NO_PATCH, SurfaceImage, Timings};
 pub use tables::{PatchNet, PatchSource, TableLayout, Tables};
-pub use view::{MAX_PROXY_LEVEL, MAX_SAMPLES, Palette, Pipeline, View};
+pub use view::{MAX_ENLARGE, MAX_POINTS_SIDE, MAX_PROXY_LEVEL, MAX_SAMPLES, Palette, Pipeline, View};
 
 use crate::stam::{Jet, LimitSurface};
 use device::Device;
