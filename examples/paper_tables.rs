@@ -7,7 +7,7 @@
 
 mod paper;
 
-use catoptric::field::{Camera, Light};
+use catoptric::field::{Camera, Light, Projection};
 use catoptric::gpu::{NO_PATCH, Pipeline, View};
 use catoptric::mesh::SubdivMesh;
 use glam::DVec3;
@@ -109,7 +109,8 @@ const FIRST_STEP: &str = "visibility";
 /// A view that the shape overfills, so that every fragment sees it.
 fn filled(size: [u32; 2]) -> View {
     let eye = DVec3::splat(6.0);
-    let camera = Camera { eye, target: DVec3::splat(0.5), up: DVec3::Z, fov: 8.0, size };
+    let camera =
+        Camera { eye, target: DVec3::splat(0.5), up: DVec3::Z, projection: Projection::Perspective { fov: 8.0 }, size };
     let light = Light::new(DVec3::new(8.0, 8.0, 12.0), DVec3::new(-1.0, -1.0, -1.6), DVec3::X, 1.0);
     View { samples: 1, ..View::new(camera, light) }
 }

@@ -20,16 +20,25 @@ fn srgb(x: vec3f) -> vec3f {
     return select(1.055 * pow(c, vec3f(1.0 / 2.4)) - 0.055, 12.92 * c, c <= vec3f(0.0031308));
 }
 
-@fragment
-fn resolve(@builtin(position) position: vec4f) -> @location(0) vec4f {
+fn mean_at(pixel: vec2i) -> vec4f {
     let n = resolve_in.samples;
-    let first = vec2i(position.xy) * n;
     var sum = vec4f(0.0);
     for (var k = 0; k < n * n; k++) {
-        sum += textureLoad(samples, first + vec2i(k % n, k / n), 0);
+        sum += textureLoad(samples, pixel * n + vec2i(k % n, k / n), 0);
     }
-    let mean = sum / f32(n * n);
+    return sum / f32(n * n);
+}
+
+@fragment
+fn resolve(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    let mean = mean_at(vec2i(position.xy));
     let height = (position.y + resolve_in.row) / resolve_in.rows;
     let background = mix(resolve_in.top, resolve_in.bottom, smoothstep(0.0, 1.0, height));
     return vec4f(srgb(mean.rgb + background * (1.0 - mean.a)), 1.0);
+}
+
+// The mean itself: linear, premultiplied, without a background.
+@fragment
+fn resolve_linear(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    return mean_at(vec2i(position.xy));
 }

@@ -1,7 +1,7 @@
 // Rasterises the proxy tessellation: which patch, at which (u,v), each pixel sees (Yasui & Kanai 2004, sec. 4.4, "face id
 // and parameters"). Host side: passes/visibility.rs.
 
-// Two texels a patch: clip-space x, y, w of its origin; the eye relative to its origin. Composed in f64.
+// Two texels a patch: clip-space x, y and w or z of its origin; the viewpoint relative to its origin. Composed in f64.
 @group(0) @binding(3) var views: texture_2d<f32>;
 @group(0) @binding(4) var<uniform> frame: Frame;
 // Patches in drawing order, NO_PATCH where a group is not full.
@@ -38,15 +38,23 @@ struct Polygon {
 }
 
 fn clip_direction(d: vec3f) -> vec3f {
-    return vec3f(dot(frame.clip_x, d), dot(frame.clip_y, d), dot(frame.clip_w, d));
+    return vec3f(dot(frame.clip_x, d), dot(frame.clip_y, d), dot(frame.clip_depth, d));
+}
+
+// z and w from the third coordinate: in perspective it is w, and z the near distance (z/w = near/distance); in an
+// orthographic view it is z, and w is 1. Either way the greater depth is the nearer.
+fn depth_of(third: f32) -> vec2f {
+    return select(vec2f(frame.near, third), vec2f(third, 1.0), frame.orthographic != 0u);
 }
 
 // How far to move along the unit tangent `d` so that the vertex at clip-space c moves by PUSH pixels. Where the tangent
 // is seen end on, not more than 10 times what it takes face on.
 fn push_distance(c: vec3f, d: vec3f) -> f32 {
-    let w = max(c.z, frame.near);
+    let perspective = frame.orthographic == 0u;
+    let w = select(1.0, max(c.z, frame.near), perspective);
     let e = clip_direction(d);
-    let speed = length((e.xy - c.xy * (e.z / w)) * frame.size * frame.scale) * 0.5 / w;
+    let turn = select(0.0, e.z / w, perspective);
+    let speed = length((e.xy - c.xy * turn) * frame.size * frame.scale) * 0.5 / w;
     let head_on = frame.focal / w;
     return PUSH / max(speed, 0.1 * head_on);
 }
@@ -54,7 +62,8 @@ fn push_distance(c: vec3f, d: vec3f) -> f32 {
 // Where a point of a patch, relative to its origin, is in the picture.
 fn projected(patch_id: u32, position: vec3f) -> vec4f {
     let clip = textureLoad(views, at(2u * patch_id), 0).xyz + clip_direction(position);
-    return vec4f(clip.xy * frame.scale + frame.shift * clip.z, frame.near, clip.z);
+    let depth = depth_of(clip.z);
+    return vec4f(clip.xy * frame.scale + frame.shift * depth.y, depth);
 }
 
 // For `--pipeline points`: the polygon as it is, no border moved.
@@ -94,8 +103,9 @@ fn vertex(@location(0) uv: vec2f, @location(1) member: u32, @builtin(instance_in
     if is_irregular(record) && all(uv == vec2f(0.0)) {
         shift = vec2f(0.0);
     }
-    let xy = clip.xy * frame.scale + frame.shift * clip.z;
-    return Vertex(vec4f(xy, frame.near, clip.z), uv + shift, patch_id, p.position, p.normal);
+    let depth = depth_of(clip.z);
+    let xy = clip.xy * frame.scale + frame.shift * depth.y;
+    return Vertex(vec4f(xy, depth), uv + shift, patch_id, p.position, p.normal);
 }
 
 @fragment

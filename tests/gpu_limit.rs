@@ -3,9 +3,9 @@
 mod gpu_support;
 
 use catoptric::gpu::tables::{BUDGET, bytes, tail_error};
-use catoptric::gpu::{AdapterChoice, Gpu, GpuError, PatchNet, Sample, TableLayout};
+use catoptric::gpu::{AdapterChoice, Gpu, GpuError, Sample, TableLayout};
 use catoptric::mesh::{self, SubdivMesh};
-use catoptric::stam::{Jet, LimitSurface, Net, weights};
+use catoptric::stam::{Jet, LimitSurface, weights};
 use glam::{DVec3, dvec3};
 use gpu_support::{Random, gpu, meshes};
 
@@ -228,10 +228,7 @@ fn regular_nets_need_no_mesh() {
             })
         })
         .collect();
-    let patch =
-        |&net: &[DVec3; 16]| PatchNet { levels: [0; 2], transition: 0, net: Net::Regular(net), normal: DVec3::ZERO };
-    let patches: Vec<PatchNet> = nets.iter().map(patch).collect();
-    let tables = gpu().upload_patches(patches.as_slice()).expect("it fits");
+    let tables = gpu().upload_patches(&nets).expect("it fits");
     let uv = parameters(5);
     let samples: Vec<Sample> = (0..8).flat_map(|patch| uv.iter().map(move |&uv| Sample { patch, uv })).collect();
     let jets = gpu().evaluate(&tables, &samples).expect("the adapter works");

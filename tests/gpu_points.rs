@@ -2,7 +2,7 @@
 
 mod gpu_support;
 
-use catoptric::field::{Camera, Light};
+use catoptric::field::{Camera, Light, Projection};
 use catoptric::gpu::{Gpu, GpuError, MAX_POINTS_SIDE, NO_PATCH, Pipeline, SurfaceImage, Tables, View};
 use catoptric::stam::LimitSurface;
 use glam::{DVec3, dvec3};
@@ -19,7 +19,8 @@ fn view(surface: &LimitSurface, level: u32, enlarge: f64) -> View {
     let [low, high] = surface.bounds().expect("it has patches");
     let (middle, diagonal) = ((low + high) * 0.5, (high - low).length());
     let eye = middle + dvec3(1.0, 2.0, 1.5).normalize() * diagonal * 1.6;
-    let camera = Camera { eye, target: middle, up: DVec3::Z, fov: 40.0, size: SIZE };
+    let camera =
+        Camera { eye, target: middle, up: DVec3::Z, projection: Projection::Perspective { fov: 40.0 }, size: SIZE };
     let light = Light::new(middle + diagonal * 1.5 * DVec3::Z, DVec3::NEG_Z, DVec3::Y, 0.8 * diagonal);
     View { pipeline: Pipeline::Points, proxy_level: Some(level), enlarge, samples: 1, ..View::new(camera, light) }
 }

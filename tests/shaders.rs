@@ -53,11 +53,11 @@ fn structs_have_the_same_layout_on_both_sides() {
     same_layout!("Span", SpanRecord { first, count, groups, rows });
     same_layout!(
         "Frame",
-        FrameRecord { clip_x, near, clip_y, focal, clip_w, proxy_level, scale, shift, size, padding }
+        FrameRecord { clip_x, near, clip_y, focal, clip_depth, proxy_level, scale, shift, size, orthographic, padding }
     );
     same_layout!("SampleRecord", SampleRecord { uv, patch_id, padding });
     same_layout!("JetRecord", JetRecord { position, du, dv, normal });
-    same_layout!("Light", LightRecord { center, spacing, axis_x, half_x, axis_y, half_y });
+    same_layout!("Light", LightRecord { center, spacing, axis_x, half_x, axis_y, half_y, sight, from_eye });
     same_layout!(
         "Shade",
         ShadeRecord {

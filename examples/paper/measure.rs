@@ -162,7 +162,7 @@ impl Search<'_> {
         let (uv, here) = (DVec2::from_array(at.uv), self.jet(at));
         let value = |uv: DVec2| {
             let jet = self.stage.surface.evaluate(at.patch, uv.to_array());
-            self.view.field.value(jet.position, jet.normal, camera.eye)
+            self.view.field.value(jet.position, jet.normal, camera.sight(jet.position))
         };
         // One-sided differences, inwards: their error is of the order of the step.
         const STEP: f64 = 1e-6;

@@ -5,7 +5,7 @@
 
 pub mod measure;
 
-use catoptric::field::{Camera, DEFAULT_FOV, Light, Scout};
+use catoptric::field::{Camera, DEFAULT_FOV, Projection, Scout, sample_rig};
 use catoptric::gpu::{Gpu, Pipeline, Tables, View};
 use catoptric::mesh::{self, SubdivMesh};
 use catoptric::stam::LimitSurface;
@@ -14,7 +14,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 /// The pipeline that stands for the limit surface itself.
-pub const EXACT: Pipeline = Pipeline::Limit;
+pub const EXACT: Pipeline = Pipeline::Exact;
 
 /// Why a program stopped: one line.
 pub type Failure = Box<dyn std::error::Error>;
@@ -74,30 +74,31 @@ impl Stage {
         let scout = Scout::new(&self.surface).ok_or("no face has a limit surface; nothing to draw")?;
         let view = match self.is_sample {
             true => {
-                let camera = scout.camera_from(size, DVec3::Z, DVec3::new(-1.90, 2.10, 0.81), DEFAULT_FOV);
-                let [center, facing, lines] =
-                    [[3.6, 2.7, 1.5], [-0.72, -0.63, -0.28], [0.38, -0.55, 0.60]].map(DVec3::from_array);
-                View::new(camera, Light::new(center, facing, lines, 1.0))
+                let (direction, light) = sample_rig();
+                View::new(scout.camera_from(size, DVec3::Z, direction, DEFAULT_FOV), light)
             }
             false => {
                 let camera = scout.camera(size, DVec3::Z);
-                View::new(camera, scout.light(camera.eye, DVec3::Z))
+                View::new(camera, scout.light(&camera))
             }
         };
         Ok(View { samples: 1, ..view })
     }
 }
 
-/// The part of a picture round a point of it, from the same eye: `center` in parts of its width and height, `zoom` times
-/// as large.
+/// The part of a picture in perspective round a point of it, from the same eye: `center` in parts of its width and height,
+/// `zoom` times as large.
 pub fn close_up(camera: &Camera, center: [f64; 2], zoom: f64) -> Camera {
     let [w, h] = camera.size.map(f64::from);
     let ray = camera.pixel_ray(center[0] * w, center[1] * h);
-    Camera {
-        target: camera.eye + ray * camera.eye.distance(camera.target),
-        fov: 2.0 * ((camera.fov.to_radians() / 2.0).tan() / zoom).atan().to_degrees(),
-        ..*camera
-    }
+    let projection = match camera.projection {
+        Projection::Perspective { fov } => {
+            let fov = 2.0 * ((fov.to_radians() / 2.0).tan() / zoom).atan().to_degrees();
+            Projection::Perspective { fov }
+        }
+        Projection::Orthographic { height } => Projection::Orthographic { height: height / zoom },
+    };
+    Camera { target: camera.eye + ray.direction * camera.eye.distance(camera.target), projection, ..*camera }
 }
 
 /// Some view drawn by a pipeline at a level; points with the enlargement given.

@@ -1,13 +1,17 @@
 // The point of a plane light source that the surface mirrors into the eye. f64 twin: src/field/reflection.rs.
 
 struct Light {
-    // Relative to the eye.
+    // Relative to the viewpoint: the eye, or a point of an orthographic line of sight.
     center: vec3f,
     spacing: f32,
     axis_x: vec3f,
     half_x: f32,
     axis_y: vec3f,
     half_y: f32,
+    // Direction of sight in an orthographic view, else zero.
+    sight: vec3f,
+    // 1 in perspective, else 0.
+    from_eye: f32,
 }
 
 struct FieldValue {
@@ -17,11 +21,17 @@ struct FieldValue {
     elevation: f32,
 }
 
-// `sight`: from the eye to the surface point. Yasui & Kanai 2004, eq. 1 and sec. 3.1; Ulmet 2003, eq. 5.7.
-fn field_value(sight: vec3f, normal: vec3f) -> FieldValue {
+// Along the line of sight to a point, `place` relative to the viewpoint.
+fn sight_to(place: vec3f) -> vec3f {
+    return light.sight + place * light.from_eye;
+}
+
+// `place`: the surface point relative to the viewpoint; `sight`: along the line of sight to it. Yasui & Kanai 2004, eq. 1
+// and sec. 3.1; Ulmet 2003, eq. 5.7.
+fn field_value(place: vec3f, sight: vec3f, normal: vec3f) -> FieldValue {
     let ray = sight - normal * (2.0 * dot(sight, normal));
     let plane = cross(light.axis_x, light.axis_y);
-    let to_center = light.center - sight;
+    let to_center = light.center - place;
     let along = dot(ray, plane);
     let height = dot(to_center, plane);
     // t > 0: numerator and denominator have the same sign.

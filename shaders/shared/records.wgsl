@@ -9,19 +9,20 @@ fn at(index: u32) -> vec2u {
 }
 
 struct Frame {
-    // Rows x, y and w of the linear part of the projection.
+    // Rows of the linear part of the projection: x, y, and w in perspective or z in an orthographic view.
     clip_x: vec3f,
-    // Clip-space z of everything: the near distance (reversed, infinite depth: z/w = near/distance).
+    // Clip-space z in perspective: the near distance (reversed, infinite depth: z/w = near/distance).
     near: f32,
     clip_y: vec3f,
-    // Pixels per unit at distance 1.
+    // Pixels per unit where w is 1.
     focal: f32,
-    clip_w: vec3f,
+    clip_depth: vec3f,
     proxy_level: u32,
     // Part of the picture that this pass draws: clip.xy * scale + shift * clip.w.
     scale: vec2f,
     shift: vec2f,
     // Size of the target in pixels.
     size: vec2f,
-    padding: vec2f,
+    orthographic: u32,
+    padding: u32,
 }

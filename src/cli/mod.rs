@@ -4,6 +4,8 @@ mod args;
 mod eval;
 mod info;
 mod render;
+mod rig;
+mod settings;
 mod verify;
 
 use args::{Cli, Command};

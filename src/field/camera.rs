@@ -1,4 +1,4 @@
-//! A pinhole camera in f64.
+//! A camera in f64: a pinhole, or one with parallel lines of sight.
 
 use glam::{DVec3, dvec3};
 
@@ -17,10 +17,34 @@ pub struct Camera {
     pub target: DVec3,
     /// Direction that points up in the picture; not parallel to the line of sight.
     pub up: DVec3,
-    /// Vertical field of view in degrees, between 0 and 180.
-    pub fov: f64,
+    /// How space falls on the picture.
+    pub projection: Projection,
     /// Picture size in pixels, width and height.
     pub size: [u32; 2],
+}
+
+/// How space falls on the picture. Neither shows what is behind the plane through the eye across the line of sight.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Projection {
+    /// Lines of sight meet in the eye.
+    Perspective {
+        /// Vertical field of view in degrees, between 0 and 180.
+        fov: f64,
+    },
+    /// Lines of sight are parallel to the one from eye to target.
+    Orthographic {
+        /// World units that the picture's height spans, greater than 0.
+        height: f64,
+    },
+}
+
+/// A half-line in world space.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ray {
+    /// Where it starts.
+    pub origin: DVec3,
+    /// Where it goes, of unit length.
+    pub direction: DVec3,
 }
 
 /// Orthonormal frame of a camera, with the scales that turn camera space into normalised device coordinates.
@@ -32,22 +56,21 @@ pub struct Axes {
     pub up: DVec3,
     /// Unit vector along the line of sight.
     pub forward: DVec3,
-    /// x_ndc = scale_x * (d . right) / (d . forward), y_ndc likewise, for d = point - eye.
+    /// x_ndc = scale_x (d . right) / w, y_ndc likewise, for d = point - eye; w is d . forward in perspective and 1 in an
+    /// orthographic view.
     pub scale: [f64; 2],
 }
 
 impl Camera {
     /// A camera that looks against `direction` (from the object to the eye) and is as near as it can be with all
-    /// `points` in the picture: they reach `FILL` of its half width or half height on both sides.
+    /// `points` in the picture: they reach `FILL` of its half width or half height on both sides. `fov`: vertical field of
+    /// view in degrees.
     pub fn fit(points: &[DVec3], size: [u32; 2], up: DVec3, direction: DVec3, fov: f64) -> Camera {
         let forward = -direction.try_normalize().unwrap_or(DVec3::X);
-        let mut camera = Camera { eye: DVec3::ZERO, target: forward, up, fov, size };
+        let mut camera =
+            Camera { eye: DVec3::ZERO, target: forward, up, projection: Projection::Perspective { fov }, size };
         let axes = camera.axes();
-        let range = |value: &dyn Fn(DVec3) -> f64| {
-            points
-                .iter()
-                .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &p| [low.min(value(p)), high.max(value(p))])
-        };
+        let range = |value: &dyn Fn(DVec3) -> f64| range(points, value);
         // Along each picture axis a: |(p - eye) . a| <= k (p - eye) . forward, k = FILL / scale, bounds eye . a from both
         // sides; the two meet at the nearest possible eye.
         let sides = [axes.right, axes.up].map(|axis| (axis, FILL / axes.scale[usize::from(axis == axes.up)]));
@@ -66,6 +89,38 @@ impl Camera {
         camera
     }
 
+    /// An orthographic camera that looks against `direction` (from the object to the eye) at all `points`: they reach
+    /// `FILL` of the picture's half width or half height on both sides. The eye is a diagonal of their box away, so that
+    /// they stay in front of it from whatever side it looks.
+    pub fn fit_orthographic(points: &[DVec3], size: [u32; 2], up: DVec3, direction: DVec3) -> Camera {
+        let forward = -direction.try_normalize().unwrap_or(DVec3::X);
+        let projection = Projection::Orthographic { height: 1.0 };
+        let mut camera = Camera { eye: DVec3::ZERO, target: forward, up, projection, size };
+        let axes = camera.axes();
+        let middle = |axis: DVec3| {
+            let [low, high] = range(points, &|p| p.dot(axis));
+            axis * (0.5 * (low + high))
+        };
+        camera.target = [axes.right, axes.up, forward].map(middle).into_iter().sum();
+        let extent = DVec3::AXES.map(|axis| range(points, &|p| p.dot(axis))).map(|[low, high]| high - low);
+        // A single point: far enough away that eye and target differ in f64.
+        let distance = DVec3::from_array(extent).length().max(camera.target.abs().max_element() * 1e-9);
+        camera.eye = camera.target - forward * if distance > 0.0 { distance } else { 1.0 };
+        camera.projection = Projection::Orthographic { height: camera.height_for(points) };
+        camera
+    }
+
+    /// Height of an orthographic picture with all `points` in it, from this camera's eye towards its target: they reach
+    /// `FILL` of its half width or half height on one side at least.
+    pub fn height_for(&self, points: &[DVec3]) -> f64 {
+        let axes = self.axes();
+        let half = |axis: DVec3| range(points, &|p| (p - self.target).dot(axis).abs())[1];
+        let aspect = f64::from(self.size[0]) / f64::from(self.size[1]);
+        let height = 2.0 / FILL * half(axes.up).max(half(axes.right) / aspect);
+        // Points on the line of sight ask for nothing.
+        height.max((self.target - self.eye).length() * 1e-3)
+    }
+
     /// Direction of the three-quarter view, from the object to the eye: mostly at the long side of the box `bounds`,
     /// turned towards its front and from above, as bodywork is judged.
     pub fn three_quarter(bounds: [DVec3; 2], up: DVec3) -> DVec3 {
@@ -80,39 +135,75 @@ impl Camera {
     pub fn axes(&self) -> Axes {
         let forward = (self.target - self.eye).try_normalize().unwrap_or(DVec3::NEG_Z);
         let right = forward.cross(self.up).try_normalize().unwrap_or_else(|| forward.any_orthonormal_vector());
-        let scale_y = 1.0 / (self.fov.to_radians() * 0.5).tan();
+        let scale_y = match self.projection {
+            Projection::Perspective { fov } => 1.0 / (fov.to_radians() * 0.5).tan(),
+            Projection::Orthographic { height } => 2.0 / height,
+        };
         let aspect = f64::from(self.size[0]) / f64::from(self.size[1]);
         Axes { right, up: right.cross(forward), forward, scale: [scale_y / aspect, scale_y] }
     }
 
-    /// Distance of the near plane for an object inside `bounds`: half the way to the nearest corner, and at least a
-    /// ten-millionth of the box where the eye is inside it. The depth buffer is reversed and infinite (near/distance in
-    /// f32), so its relative resolution is the same everywhere and no far plane is needed.
-    pub fn near(&self, bounds: [DVec3; 2]) -> f64 {
-        let forward = self.axes().forward;
-        let nearest = corners(bounds).map(|c| (c - self.eye).dot(forward)).into_iter().fold(f64::INFINITY, f64::min);
-        let diagonal = (bounds[1] - bounds[0]).length().max(f64::MIN_POSITIVE);
-        (nearest * 0.5).max(diagonal * 1e-7)
+    /// Whether lines of sight are parallel.
+    pub fn is_orthographic(&self) -> bool {
+        matches!(self.projection, Projection::Orthographic { .. })
     }
 
-    /// Unit direction of the ray through pixel coordinates (x right, y down; the first pixel's centre is at 0.5, 0.5).
-    pub fn pixel_ray(&self, x: f64, y: f64) -> DVec3 {
+    /// Vector along the line of sight to a point, world space: from the eye to it in perspective, of unit length in an
+    /// orthographic view.
+    pub fn sight(&self, point: DVec3) -> DVec3 {
+        match self.projection {
+            Projection::Perspective { .. } => point - self.eye,
+            Projection::Orthographic { .. } => self.axes().forward,
+        }
+    }
+
+    /// Distances from the eye, along the line of sight, between which `bounds` is seen. Near: half the way to the nearest
+    /// corner in perspective, and at least a ten-millionth of the box where the eye is inside it. There the depth buffer
+    /// is reversed and infinite (near/distance in f32), so its relative resolution is the same everywhere and the far
+    /// distance, beyond the farthest corner, does not matter. In an orthographic view depth is linear between the two,
+    /// which leave a hundredth of the box free on both sides; near is not less than 0.
+    pub fn depth_range(&self, bounds: [DVec3; 2]) -> [f64; 2] {
+        let forward = self.axes().forward;
+        let [nearest, farthest] = range(&corners(bounds), &|c| (c - self.eye).dot(forward));
+        let diagonal = (bounds[1] - bounds[0]).length().max(f64::MIN_POSITIVE);
+        let margin = 0.01 * diagonal.max(1e-9 * farthest.abs());
+        let near = match self.projection {
+            Projection::Perspective { .. } => (nearest * 0.5).max(diagonal * 1e-7),
+            Projection::Orthographic { .. } => (nearest - margin).max(0.0),
+        };
+        [near, (farthest + margin).max(near + margin)]
+    }
+
+    /// Line of sight through pixel coordinates (x right, y down; the first pixel's centre is at 0.5, 0.5). It starts at the
+    /// eye, in an orthographic view in the plane through the eye across the line of sight.
+    pub fn pixel_ray(&self, x: f64, y: f64) -> Ray {
         let axes = self.axes();
         let ndc_x = 2.0 * x / f64::from(self.size[0]) - 1.0;
         let ndc_y = 1.0 - 2.0 * y / f64::from(self.size[1]);
-        (axes.forward + axes.right * (ndc_x / axes.scale[0]) + axes.up * (ndc_y / axes.scale[1])).normalize()
+        let aside = axes.right * (ndc_x / axes.scale[0]) + axes.up * (ndc_y / axes.scale[1]);
+        match self.projection {
+            Projection::Perspective { .. } => Ray { origin: self.eye, direction: (axes.forward + aside).normalize() },
+            Projection::Orthographic { .. } => Ray { origin: self.eye + aside, direction: axes.forward },
+        }
     }
 
     /// Pixel coordinates of a world-space point, `None` behind the eye.
     pub fn project(&self, point: DVec3) -> Option<[f64; 2]> {
         let axes = self.axes();
         let d = point - self.eye;
-        let w = d.dot(axes.forward);
-        (w > 0.0).then(|| {
+        let depth = d.dot(axes.forward);
+        let w = if self.is_orthographic() { 1.0 } else { depth };
+        (depth > 0.0).then(|| {
             let ndc = [axes.scale[0] * d.dot(axes.right) / w, axes.scale[1] * d.dot(axes.up) / w];
             [(ndc[0] + 1.0) * 0.5 * f64::from(self.size[0]), (1.0 - ndc[1]) * 0.5 * f64::from(self.size[1])]
         })
     }
+}
+
+/// Least and greatest value over points.
+fn range(points: &[DVec3], value: &dyn Fn(DVec3) -> f64) -> [f64; 2] {
+    let wider = |[low, high]: [f64; 2], x: f64| [low.min(x), high.max(x)];
+    points.iter().map(|&p| value(p)).fold([f64::INFINITY, f64::NEG_INFINITY], wider)
 }
 
 /// The two horizontal directions of a box standing on the plane across `up`: first the one along which it is longest.
@@ -151,35 +242,66 @@ mod tests {
         for (size, up) in [([640, 480], DVec3::Z), ([300, 900], DVec3::Y)] {
             let bounds = [dvec3(1000.0, -502.0, 200.0), dvec3(1004.0, -500.0, 201.0)];
             let points = corners(bounds);
-            let camera = Camera::fit(&points, size, up, Camera::three_quarter(bounds, up), DEFAULT_FOV);
-            let mut reach = [[0.0f64; 2]; 2];
-            for point in points {
-                let pixel = camera.project(point).unwrap();
-                for k in 0..2 {
-                    let ndc = 2.0 * pixel[k] / f64::from(size[k]) - 1.0;
-                    reach[k] = [reach[k][0].min(ndc), reach[k][1].max(ndc)];
+            let direction = Camera::three_quarter(bounds, up);
+            let perspective = Camera::fit(&points, size, up, direction, DEFAULT_FOV);
+            for camera in [perspective, Camera::fit_orthographic(&points, size, up, direction)] {
+                let mut reach = [[0.0f64; 2]; 2];
+                for point in points {
+                    let pixel = camera.project(point).unwrap();
+                    for k in 0..2 {
+                        let ndc = 2.0 * pixel[k] / f64::from(size[k]) - 1.0;
+                        reach[k] = [reach[k][0].min(ndc), reach[k][1].max(ndc)];
+                    }
                 }
+                // As large as it can be: it reaches both sides of the tighter way, and none is passed.
+                assert!(reach.as_flattened().iter().all(|x| x.abs() < FILL + 1e-9), "{reach:?}");
+                assert!(reach.iter().any(|[low, high]| low + FILL < 1e-9 && FILL - high < 1e-9), "{reach:?}");
+                let [near, far] = camera.depth_range(bounds);
+                let depths = points.map(|p| (p - camera.eye).dot(camera.axes().forward));
+                assert!(depths.into_iter().all(|depth| 0.0 < near && near < depth && depth < far), "{near} {far}");
             }
-            // As large as it can be: it reaches both sides of the tighter way, and none is passed.
-            assert!(reach.as_flattened().iter().all(|x| x.abs() < FILL + 1e-9), "{reach:?}");
-            assert!(reach.iter().any(|[low, high]| low + FILL < 1e-9 && FILL - high < 1e-9), "{reach:?}");
-            assert!(camera.near(bounds) > 0.0);
         }
     }
 
     #[test]
     fn degenerate_objects_are_seen_from_outside() {
-        for points in [vec![DVec3::ONE], vec![DVec3::ZERO, DVec3::X], vec![DVec3::ONE * 1e6; 3]] {
-            let camera = Camera::fit(&points, [64, 64], DVec3::Z, DVec3::X, DEFAULT_FOV);
-            assert!(camera.eye.is_finite() && camera.eye != camera.target, "{camera:?}");
+        for points in [vec![DVec3::ONE], vec![DVec3::ZERO, DVec3::X], vec![DVec3::ONE * 1e6; 3], vec![DVec3::ZERO]] {
+            let cameras = [
+                Camera::fit(&points, [64, 64], DVec3::Z, DVec3::X, DEFAULT_FOV),
+                Camera::fit_orthographic(&points, [64, 64], DVec3::Z, DVec3::X),
+            ];
+            for camera in cameras {
+                assert!(camera.eye.is_finite() && camera.eye != camera.target, "{camera:?}");
+                assert!(camera.axes().scale.iter().all(|s| s.is_finite() && *s > 0.0), "{camera:?}");
+            }
         }
     }
 
     #[test]
+    fn nothing_behind_the_eye_is_in_the_depth_range() {
+        let bounds = [DVec3::ZERO, DVec3::ONE];
+        let mut camera = Camera::fit_orthographic(&corners(bounds), [64, 48], DVec3::Y, DVec3::Z);
+        (camera.eye.z, camera.target.z) = (0.5, 0.0);
+        assert_eq!(camera.depth_range(bounds)[0], 0.0);
+        assert_eq!(camera.project(dvec3(0.5, 0.5, 0.6)), None);
+        (camera.eye.z, camera.target.z) = (-5.0, -6.0);
+        let [near, far] = camera.depth_range(bounds);
+        assert!(near == 0.0 && far > 0.0, "{near} {far}");
+    }
+
+    #[test]
     fn pixel_ray_inverts_project() {
-        let camera = Camera::fit(&corners([DVec3::ZERO, DVec3::ONE]), [64, 48], DVec3::Y, DVec3::ONE, DEFAULT_FOV);
-        let ray = camera.pixel_ray(10.25, 40.5);
-        let [x, y] = camera.project(camera.eye + ray * 3.7).unwrap();
-        assert!((x - 10.25).abs() < 1e-10 && (y - 40.5).abs() < 1e-10);
+        let points = corners([DVec3::ZERO, DVec3::ONE]);
+        for camera in [
+            Camera::fit(&points, [64, 48], DVec3::Y, DVec3::ONE, DEFAULT_FOV),
+            Camera::fit_orthographic(&points, [64, 48], DVec3::Y, DVec3::ONE),
+        ] {
+            let ray = camera.pixel_ray(10.25, 40.5);
+            let point = ray.origin + ray.direction * 3.7;
+            let [x, y] = camera.project(point).unwrap();
+            assert!((x - 10.25).abs() < 1e-10 && (y - 40.5).abs() < 1e-10);
+            assert!(camera.sight(point).normalize().distance(ray.direction) < 1e-14);
+            assert!((ray.origin - camera.eye).dot(camera.axes().forward).abs() < 1e-14);
+        }
     }
 }

@@ -1,4 +1,4 @@
-//! One function of (position, normal, eye) a file, in f64: the twins of `shaders/field/*.wgsl`.
+//! One function of (position, normal, line of sight) a file, in f64: the twins of `shaders/field/*.wgsl`.
 //!
 //! Theory: every method of the sources is a field on the surface. Stripes, bands and pictures are one reading of it
 //! (a [`Pattern`], per pixel); curves are the other (contours, Ulmet 2003, Theorem RC).
@@ -10,11 +10,11 @@ mod pattern;
 mod reflection;
 mod rig;
 
-pub use camera::{Axes, Camera, DEFAULT_FOV};
+pub use camera::{Axes, Camera, DEFAULT_FOV, Projection, Ray};
 pub use light::Light;
 pub use pattern::{Pattern, Picture};
 pub use reflection::{reflection, reflection_direction};
-pub use rig::Scout;
+pub use rig::{Scout, sample_rig};
 
 use glam::{DVec2, DVec3};
 
@@ -27,10 +27,11 @@ pub enum Field {
 
 impl Field {
     /// Value at a surface point, `None` where the field is undefined there (the mirrored ray misses the light plane).
-    /// `position` and `eye` in world space, `normal` of unit length; the value is in world units of the light plane.
-    pub fn value(&self, position: DVec3, normal: DVec3, eye: DVec3) -> Option<DVec2> {
+    /// `position` in world space, `normal` of unit length, `sight` along the line of sight to the point, of any length
+    /// ([`Camera::sight`]); the value is in world units of the light plane.
+    pub fn value(&self, position: DVec3, normal: DVec3, sight: DVec3) -> Option<DVec2> {
         match self {
-            Field::Reflection(light) => reflection(light, position, normal, eye),
+            Field::Reflection(light) => reflection(light, position, normal, sight),
         }
     }
 

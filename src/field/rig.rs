@@ -16,6 +16,13 @@ pub struct Scout {
     bounds: [DVec3; 2],
 }
 
+/// Direction of sight, from the object to the eye, and light that show the built-in sample best: the fender in three-quarter
+/// view, mirroring a wall of tubes behind and beside the car, whose lines run over shoulder, feature line and wheel arch.
+pub fn sample_rig() -> (DVec3, Light) {
+    let [center, facing, lines] = [[3.6, 2.7, 1.5], [-0.72, -0.63, -0.28], [0.38, -0.55, 0.60]].map(DVec3::from_array);
+    (DVec3::new(-1.90, 2.10, 0.81), Light::new(center, facing, lines, 1.0))
+}
+
 /// Points looked at, about.
 const BUDGET: usize = 40_000;
 /// Points a ptex face, each way; inside it, because derivatives may be infinite at its corners.
@@ -50,16 +57,26 @@ impl Scout {
         Camera::fit(&self.outline, size, up, direction, fov)
     }
 
+    /// An orthographic camera that sees all of the surface from `direction` (from the object to the eye).
+    pub fn orthographic_from(&self, size: [u32; 2], up: DVec3, direction: DVec3) -> Camera {
+        Camera::fit_orthographic(&self.outline, size, up, direction)
+    }
+
+    /// Height of an orthographic picture of all of the surface, from this camera's eye towards its target.
+    pub fn height_for(&self, camera: &Camera) -> f64 {
+        camera.height_for(&self.outline)
+    }
+
     /// The three-quarter view.
     pub fn camera(&self, size: [u32; 2], up: DVec3) -> Camera {
         self.camera_from(size, up, Camera::three_quarter(self.bounds, up), DEFAULT_FOV)
     }
 
-    /// An infinite plane of tubes, placed so that as much as possible of what `eye` sees mirrors it, in doubt behind the
+    /// An infinite plane of tubes, placed so that as much as possible of what `camera` sees mirrors it, in doubt behind the
     /// eye and above it; its tubes run along the longest side of the object (on a car they flow from bonnet to boot). The
     /// spacing follows from the mirrored points themselves, so that flat and round objects show as many lines. The
     /// constants are empirical: chosen by looking at bodies of many shapes.
-    pub fn light(&self, eye: DVec3, up: DVec3) -> Light {
+    pub fn light(&self, camera: &Camera) -> Light {
         /// Distance of the plane in diagonals: so far that the lines show the normals rather than the positions.
         const DISTANCE: f64 = 4.0;
         /// Tubes that the middle half of the visible surface mirrors.
@@ -67,8 +84,8 @@ impl Scout {
         let middle = (self.bounds[0] + self.bounds[1]) * 0.5;
         let extent = self.bounds[1] - self.bounds[0];
         let diagonal = extent.length().max(f64::MIN_POSITIVE);
-        let seen = self.visible(eye);
-        let direction = self.lightest(&seen, eye, up);
+        let seen = self.visible(camera);
+        let direction = self.lightest(&seen, camera);
         let longest = match extent {
             e if e.x >= e.y && e.x >= e.z => DVec3::X,
             e if e.y >= e.z => DVec3::Y,
@@ -77,7 +94,10 @@ impl Scout {
         let mut light = Light::new(middle + direction * (DISTANCE * diagonal), -direction, longest, diagonal);
         let mut hits: Vec<(f64, f64)> = seen
             .iter()
-            .filter_map(|&(i, w)| Some((reflection(&light, self.points[i], self.normals[i], eye)?.x, w)))
+            .filter_map(|&(i, w)| {
+                let (point, normal) = (self.points[i], self.normals[i]);
+                Some((reflection(&light, point, normal, camera.sight(point))?.x, w))
+            })
             .collect();
         hits.sort_by(|a, b| a.0.total_cmp(&b.0));
         let total: f64 = hits.iter().map(|(_, w)| w).sum();
@@ -99,7 +119,7 @@ impl Scout {
     }
 
     /// The direction from which a plane light reaches most of the visible surface.
-    fn lightest(&self, seen: &[(usize, f64)], eye: DVec3, up: DVec3) -> DVec3 {
+    fn lightest(&self, seen: &[(usize, f64)], camera: &Camera) -> DVec3 {
         /// Candidates, evenly over the sphere.
         const DIRECTIONS: usize = 400;
         /// Sine of the elevation over the plane below which its lines crowd at the horizon.
@@ -108,11 +128,15 @@ impl Scout {
         let mirrored: Vec<(DVec3, f64)> = seen
             .iter()
             .step_by(stride)
-            .map(|&(i, w)| (reflection_direction(self.points[i], self.normals[i], eye).normalize_or_zero(), w))
+            .map(|&(i, w)| {
+                let ray = reflection_direction(self.normals[i], camera.sight(self.points[i]));
+                (ray.normalize_or_zero(), w)
+            })
             .collect();
         let total: f64 = mirrored.iter().map(|(_, w)| w).sum();
         let middle = (self.bounds[0] + self.bounds[1]) * 0.5;
-        let habit = 0.3 * (eye - middle).normalize_or_zero() + 0.1 * up.normalize_or_zero();
+        let up = camera.up.normalize_or_zero();
+        let habit = -0.3 * camera.sight(middle).normalize_or_zero() + 0.1 * up;
         let score = |d: DVec3| {
             let lit: f64 = mirrored.iter().filter(|(r, _)| r.dot(d) > HORIZON).map(|(_, w)| w).sum();
             lit / total.max(f64::MIN_POSITIVE) + habit.dot(d)
@@ -126,17 +150,17 @@ impl Scout {
         (0..DIRECTIONS)
             .map(candidate)
             // Light from below looks wrong, whatever it reaches.
-            .filter(|d| d.dot(up.normalize_or_zero()) > 0.1)
+            .filter(|d| d.dot(up) > 0.1)
             .map(|d| (d, score(d)))
             .max_by(|a, b| a.1.total_cmp(&b.1))
-            .map_or(up, |(d, _)| d)
+            .map_or(camera.up, |(d, _)| d)
     }
 
     /// Points that face the eye, with their share of the picture; all of them where most turn away (a sheet seen from
     /// behind).
-    fn visible(&self, eye: DVec3) -> Vec<(usize, f64)> {
+    fn visible(&self, camera: &Camera) -> Vec<(usize, f64)> {
         let facing = |i: usize| {
-            let sight = eye - self.points[i];
+            let sight = -camera.sight(self.points[i]);
             self.areas[i] * self.normals[i].dot(sight) / sight.length().max(f64::MIN_POSITIVE).powi(3)
         };
         let all: Vec<_> = (0..self.points.len()).map(|i| (i, facing(i))).collect();

@@ -1,10 +1,13 @@
 //! Runs the passes in order and reads the results back.
 
+use super::certificate::{Certificate, Summary};
+use super::charts::Charts;
 use super::device::Device;
-use super::passes::{self, Passes, PictureTargets, Scene, SurfaceTargets, Visible};
+use super::passes::{self, Colour, Passes, PictureTargets, Scene, SurfaceTargets, Visible};
 use super::view::{Tile, View};
 use super::{GpuError, Pipeline, Tables, paper};
 use glam::{DVec2, DVec3, Vec3};
+use rayon::prelude::*;
 use std::time::{Duration, Instant};
 
 /// Patch index of a pixel that sees no surface.
@@ -37,6 +40,21 @@ pub struct Frame {
     pub size: [u32; 2],
     /// sRGB RGBA, 4 bytes a pixel, rows from top to bottom, opaque.
     pub rgba8: Vec<u8>,
+    /// What the certificates of its samples say; `None` but for the exact pipeline.
+    pub summary: Option<Summary>,
+    /// Time of each step.
+    pub timings: Timings,
+}
+
+/// A picture to work with.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LinearFrame {
+    /// Width and height.
+    pub size: [u32; 2],
+    /// Linear RGB and coverage, premultiplied, without a background; rows from top to bottom.
+    pub rgba: Vec<[f32; 4]>,
+    /// What the certificates of its samples say; `None` but for the exact pipeline.
+    pub summary: Option<Summary>,
     /// Time of each step.
     pub timings: Timings,
 }
@@ -56,6 +74,8 @@ pub struct SurfaceImage {
     pub normal: Vec<[f32; 3]>,
     /// Field value in world units, as [`Field::value`](crate::field::Field::value).
     pub field: Vec<Option<DVec2>>,
+    /// How each pixel came to its point.
+    pub certificate: Vec<Certificate>,
     /// Time of each step.
     pub timings: Timings,
 }
@@ -71,33 +91,73 @@ impl SurfaceImage {
             position: vec![DVec3::ZERO; count],
             normal: vec![[0.0; 3]; count],
             field: vec![None; count],
+            certificate: vec![Certificate::default(); count],
             timings: Timings::default(),
         }
+    }
+
+    /// The certificates, summed up.
+    pub fn summary(&self) -> Summary {
+        Summary::of(&self.certificate)
     }
 }
 
 pub(super) fn render(device: &Device, passes: &Passes, tables: &Tables, view: &View) -> Result<Frame, GpuError> {
+    let Drawn { pixels, summary, timings } = draw::<[u8; 4]>(device, passes, tables, view, Colour::Display)?;
+    Ok(Frame { size: view.camera.size, rgba8: pixels.into_flattened(), summary, timings })
+}
+
+pub(super) fn render_linear(
+    device: &Device,
+    passes: &Passes,
+    tables: &Tables,
+    view: &View,
+) -> Result<LinearFrame, GpuError> {
+    let Drawn { pixels: rgba, summary, timings } = draw(device, passes, tables, view, Colour::Linear)?;
+    Ok(LinearFrame { size: view.camera.size, rgba, summary, timings })
+}
+
+/// A picture in pixels of some kind.
+pub(super) struct Drawn<T> {
+    pub pixels: Vec<T>,
+    pub summary: Option<Summary>,
+    pub timings: Timings,
+}
+
+/// Draws a picture whose pixels are `T`, which is what `colour` comes in.
+fn draw<T: bytemuck::Pod>(
+    device: &Device,
+    passes: &Passes,
+    tables: &Tables,
+    view: &View,
+    colour: Colour,
+) -> Result<Drawn<T>, GpuError> {
     view.check()?;
     if view.pipeline == Pipeline::Points {
-        return paper::render(device, passes, tables, view);
+        return paper::draw(device, passes, tables, view, colour);
     }
     let mut timings = Timings::default();
-    timings.time("compile", || passes.prepare(device, view.pipeline));
+    timings.time("compile", || passes.prepare(device, view.pipeline, colour));
     let scene = timings.time("scene", || Scene::new(device, tables, view))?;
     let size = view.camera.size;
-    let mut rgba8 = vec![0; 4 * size[0] as usize * size[1] as usize];
+    let mut summary = (view.pipeline == Pipeline::Exact).then(Summary::default);
+    let mut whole = vec![T::zeroed(); size[0] as usize * size[1] as usize];
     for tile in Tile::cover(size, view.samples, Tile::PICTURE_SIDE) {
         let visible = Visible::new(device, &tile, view.pipeline);
-        let picture = PictureTargets::new(device, &tile);
-        timings.time("visibility", || passes::visibility::run(device, passes, &scene, &visible, &tile))?;
+        let picture = PictureTargets::new(device, &tile, colour);
+        see(device, passes, &scene, &visible, &tile, &mut timings)?;
         timings.time(limit_step(view), || passes::limit::run(device, passes, &scene, &visible, &picture.surface))?;
         timings.time("shade", || passes::shade::run(device, passes, &scene, &visible, &picture))?;
-        timings.time("resolve", || passes::resolve::run(device, passes, &scene, &picture, &tile))?;
-        let pixels: Vec<[u8; 4]> = timings.time("read back", || device.read_texture(&picture.colour))?;
+        timings.time("resolve", || passes::resolve::run(device, passes, &scene, &picture, &tile, colour))?;
+        if let (Some(summary), Some(texture)) = (&mut summary, &visible.certificate) {
+            let bits: Vec<u32> = timings.time("certificates", || device.read_texture(texture))?;
+            *summary = summary.and(timings.time("certificates", || Summary::of_bits(&bits)));
+        }
+        let pixels: Vec<T> = timings.time("read back", || device.read_texture(&picture.colour))?;
         let [origin, tile_size] = tile.pixels();
-        paste(bytemuck::cast_slice_mut::<u8, [u8; 4]>(&mut rgba8), size, &pixels, origin, tile_size);
+        paste(&mut whole, size, &pixels, origin, tile_size);
     }
-    Ok(Frame { size, rgba8, timings })
+    Ok(Drawn { pixels: whole, summary, timings })
 }
 
 pub(super) fn inspect(
@@ -117,17 +177,33 @@ pub(super) fn inspect(
     for tile in Tile::cover(size, 1, Tile::SURFACE_SIDE) {
         let visible = Visible::new(device, &tile, view.pipeline);
         let surface = SurfaceTargets::new(device, &tile);
-        timings.time("visibility", || passes::visibility::run(device, passes, &scene, &visible, &tile))?;
+        see(device, passes, &scene, &visible, &tile, &mut timings)?;
         timings.time(limit_step(view), || passes::limit::run_full(device, passes, &scene, &visible, &surface))?;
-        timings.time("read back", || read_tile(device, tables, &visible, &surface, &tile, &mut image))?;
+        timings.time("read back", || read_tile(device, &scene, &visible, &surface, &tile, &mut image))?;
     }
     image.timings = timings;
     Ok(image)
 }
 
+/// What each sample of a tile sees.
+fn see(
+    device: &Device,
+    passes: &Passes,
+    scene: &Scene<'_>,
+    visible: &Visible,
+    tile: &Tile,
+    timings: &mut Timings,
+) -> Result<(), GpuError> {
+    if scene.view.pipeline != Pipeline::Exact {
+        return timings.time("visibility", || passes::visibility::run(device, passes, scene, visible, tile));
+    }
+    let charts = timings.time("charts", || Charts::new(scene.tables, scene.view, tile));
+    timings.time("visibility", || passes::charts::run(device, passes, &charts, visible))
+}
+
 fn limit_step(view: &View) -> &'static str {
     match view.pipeline {
-        Pipeline::Limit | Pipeline::Points => "limit",
+        Pipeline::Exact | Pipeline::Limit | Pipeline::Points => "limit",
         Pipeline::Polygon => "polygon",
     }
 }
@@ -135,12 +211,13 @@ fn limit_step(view: &View) -> &'static str {
 /// Reads one tile into the image of the whole picture, a texture at a time.
 pub(super) fn read_tile(
     device: &Device,
-    tables: &Tables,
+    scene: &Scene<'_>,
     visible: &Visible,
     surface: &SurfaceTargets,
     tile: &Tile,
     image: &mut SurfaceImage,
 ) -> Result<(), GpuError> {
+    let tables = scene.tables;
     let (size, unit) = (image.size, tables.unit());
     let ids: Vec<u32> = device.read_texture(&visible.patch)?;
     let patch: Vec<u32> = ids.iter().map(|id| id.wrapping_sub(1)).collect();
@@ -159,6 +236,19 @@ pub(super) fn read_tile(
     let field: Vec<[f32; 4]> = device.read_texture(&surface.field)?;
     let value = |f: &[f32; 4]| (f[2] > 0.0).then(|| DVec2::new(f64::from(f[0]), f64::from(f[1])) * unit);
     paste(&mut image.field, size, &field.iter().map(value).collect::<Vec<_>>(), tile.origin, tile.size);
+    let certificate: Vec<Certificate> = match &visible.certificate {
+        Some(texture) => device.read_texture(texture)?.into_iter().map(Certificate::from_bits).collect(),
+        None => {
+            let camera = &scene.view.camera;
+            let at = |i: usize| [i as u32 % tile.size[0] + tile.origin[0], i as u32 / tile.size[0] + tile.origin[1]];
+            let of = |i: usize| match patch[i] {
+                NO_PATCH => Certificate::default(),
+                _ => Certificate::of_proxy(camera, at(i), position[i]),
+            };
+            (0..patch.len()).into_par_iter().map(of).collect()
+        }
+    };
+    paste(&mut image.certificate, size, &certificate, tile.origin, tile.size);
     Ok(())
 }
 

@@ -14,6 +14,8 @@
 //! `limit_point` in WGSL.
 
 mod blocks;
+mod certificate;
+mod charts;
 mod device;
 mod frame;
 mod paper;
@@ -24,9 +26,10 @@ pub mod shader;
 pub mod tables;
 mod view;
 
+pub use certificate::{Certificate, State, Summary};
 pub use device::AdapterChoice;
-pub use frame::{Frame, NO_PATCH, SurfaceImage, Timings};
-pub use tables::{PatchNet, PatchSource, TableLayout, Tables};
+pub use frame::{Frame, LinearFrame, NO_PATCH, SurfaceImage, Timings};
+pub use tables::{PatchSource, TableLayout, Tables};
 pub use view::{MAX_ENLARGE, MAX_POINTS_SIDE, MAX_PROXY_LEVEL, MAX_SAMPLES, Palette, Pipeline, View};
 
 use crate::stam::{Jet, LimitSurface};
@@ -163,7 +166,7 @@ impl Gpu {
     ///
     /// # Errors
     /// As [`Gpu::upload`].
-    pub fn upload_patches(&self, source: &(impl PatchSource + ?Sized)) -> Result<Tables, GpuError> {
+    pub fn upload_patches(&self, source: &impl PatchSource) -> Result<Tables, GpuError> {
         tables::upload(&self.device, source, TableLayout::Auto)
     }
 
@@ -182,6 +185,14 @@ impl Gpu {
     /// [`GpuError::View`] for a view that cannot be drawn.
     pub fn render(&self, tables: &Tables, view: &View) -> Result<Frame, GpuError> {
         frame::render(&self.device, self.passes(tables), tables, view)
+    }
+
+    /// Draws a picture to work with: linear f32, premultiplied, without a background.
+    ///
+    /// # Errors
+    /// As [`Gpu::render`].
+    pub fn render_linear(&self, tables: &Tables, view: &View) -> Result<LinearFrame, GpuError> {
+        frame::render_linear(&self.device, self.passes(tables), tables, view)
     }
 
     /// What every pixel's centre sees: patch, (u,v), position, normal and field.
@@ -205,7 +216,7 @@ mod tests {
         let surface = LimitSurface::new(&mesh::sample()).expect("the sample has a surface");
         let scout = Scout::new(&surface).expect("it has faces");
         let camera = scout.camera([200, 150], glam::DVec3::Z);
-        let view = View::new(camera, scout.light(camera.eye, glam::DVec3::Z));
+        let view = View::new(camera, scout.light(&camera));
         let samples: Vec<Sample> = (0..surface.patches().len() as u32)
             .flat_map(|patch| [0.0, 0.001, 0.03, 0.7].map(|x| Sample { patch, uv: [x, 0.6 * x] }))
             .collect();

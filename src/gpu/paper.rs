@@ -14,28 +14,34 @@
 //! The rectangle is drawn in tiles; their points land on one picture with one depth buffer, in the same order every time.
 
 use super::device::Device;
-use super::frame::{Frame, SurfaceImage, Timings, read_tile};
+use super::frame::{Drawn, SurfaceImage, Timings, read_tile};
 use super::passes::points::{Cloud, Landing};
-use super::passes::{self, Passes, PictureTargets, Scene, SurfaceTargets, Visible};
+use super::passes::{self, Colour, Passes, PictureTargets, Scene, SurfaceTargets, Visible};
 use super::view::{Tile, View};
 use super::{GpuError, Tables};
 use std::array::from_fn;
 
-pub(super) fn render(device: &Device, passes: &Passes, tables: &Tables, view: &View) -> Result<Frame, GpuError> {
+pub(super) fn draw<T: bytemuck::Pod>(
+    device: &Device,
+    passes: &Passes,
+    tables: &Tables,
+    view: &View,
+    colour: Colour,
+) -> Result<Drawn<T>, GpuError> {
     let mut timings = Timings::default();
     timings.time("compile", || {
-        passes.prepare(device, view.pipeline);
+        passes.prepare(device, view.pipeline, colour);
         passes::rectangle::pipeline(passes, device);
         passes::points::position_pipeline(passes, device);
         passes::points::pipeline(passes, device);
     });
     let scene = timings.time("scene", || Scene::new(device, tables, view))?;
     let whole = whole(view, view.samples);
-    let landing = Landing::new(device, &whole);
+    let landing = Landing::new(device, &whole, colour);
     let rectangle = timings.time("rectangle", || passes::rectangle::run(device, passes, &scene, &whole))?;
     for tile in parts(rectangle, view.enlarge, view.samples, Tile::PICTURE_SIDE) {
         let visible = Visible::new(device, &tile, view.pipeline);
-        let texels = PictureTargets::new(device, &tile);
+        let texels = PictureTargets::new(device, &tile, colour);
         timings.time("visibility", || passes::visibility::run(device, passes, &scene, &visible, &tile))?;
         let position = timings.time("position", || passes::points::run_position(device, passes, &scene, &visible))?;
         timings.time("colour", || {
@@ -45,9 +51,9 @@ pub(super) fn render(device: &Device, passes: &Passes, tables: &Tables, view: &V
         let cloud = Cloud { visible: &visible, position: &position };
         timings.time("points", || passes::points::run(device, passes, &scene, &cloud, &texels, &landing, &whole))?;
     }
-    timings.time("resolve", || passes::resolve::run(device, passes, &scene, &landing.picture, &whole))?;
-    let pixels: Vec<[u8; 4]> = timings.time("read back", || device.read_texture(&landing.picture.colour))?;
-    Ok(Frame { size: view.camera.size, rgba8: pixels.into_flattened(), timings })
+    timings.time("resolve", || passes::resolve::run(device, passes, &scene, &landing.picture, &whole, colour))?;
+    let pixels = timings.time("read back", || device.read_texture(&landing.picture.colour))?;
+    Ok(Drawn { pixels, summary: None, timings })
 }
 
 /// What landed on every pixel: its position need not be on the pixel's ray.
@@ -72,7 +78,7 @@ pub(super) fn inspect(
     let surface = SurfaceTargets::new(device, &whole);
     timings.time("limit", || passes::limit::run_full(device, passes, &scene, &landed, &surface))?;
     let mut image = SurfaceImage::empty(view.camera.size);
-    timings.time("read back", || read_tile(device, tables, &landed, &surface, &whole, &mut image))?;
+    timings.time("read back", || read_tile(device, &scene, &landed, &surface, &whole, &mut image))?;
     image.timings = timings;
     Ok(image)
 }

@@ -40,6 +40,52 @@ pub struct SpanRecord {
     pub rows: u32,
 }
 
+/// A chart, as instance attributes 0 to 15 of shaders/charts.wgsl, which says what they are.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable, PartialEq)]
+pub struct ChartRecord {
+    /// Patch + 1; x, y and depth of its middle, as bits.
+    pub id: [u32; 4],
+    /// Inverse of the linear map, row by row.
+    pub inverse: [f32; 4],
+    /// (u,v) of the middle, half the side of the square, zero.
+    pub start: [f32; 4],
+    /// Origin and size in the patch.
+    pub place: [f32; 4],
+    /// Rows of v: x, y, depth.
+    pub net: [[[f32; 4]; 3]; 4],
+}
+
+/// A sample solved on the host, as vertex attributes 0 to 2 of shaders/specks.wgsl.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable, PartialEq)]
+pub struct SpeckRecord {
+    /// Centre of the sample in normalised device coordinates, and depth.
+    pub place: [f32; 3],
+    /// Patch + 1.
+    pub patch_id: u32,
+    /// Patch-local parameters.
+    pub uv: [f32; 2],
+}
+
+/// `Lens`, shaders/charts.wgsl.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct LensRecord {
+    /// Samples.
+    pub size: [f32; 2],
+    /// 1 in perspective, else 0.
+    pub perspective: f32,
+    /// Depth that the depth buffer shows as 1.
+    pub near: f32,
+    /// Orthographic: depth that it shows as 0.
+    pub far: f32,
+    /// Orthographic: scale of depths.
+    pub scale: f32,
+    /// Zero.
+    pub padding: [f32; 2],
+}
+
 /// `Resolve`, shaders/resolve.wgsl.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
@@ -64,14 +110,14 @@ pub struct ResolveRecord {
 pub struct FrameRecord {
     /// Row of clip-space x.
     pub clip_x: [f32; 3],
-    /// Near distance.
+    /// Near distance: z in perspective.
     pub near: f32,
     /// Row of clip-space y.
     pub clip_y: [f32; 3],
-    /// Pixels per unit at distance 1.
+    /// Pixels per unit where clip-space w is 1.
     pub focal: f32,
-    /// Row of clip-space w.
-    pub clip_w: [f32; 3],
+    /// Row of clip-space w; in an orthographic view, of z.
+    pub clip_depth: [f32; 3],
     /// Level of the proxy tessellation.
     pub proxy_level: u32,
     /// Scale of clip-space x and y to this pass's part of the picture.
@@ -80,8 +126,10 @@ pub struct FrameRecord {
     pub shift: [f32; 2],
     /// Target size in pixels.
     pub size: [f32; 2],
+    /// 1 in an orthographic view, else 0.
+    pub orthographic: u32,
     /// Zero.
-    pub padding: [f32; 2],
+    pub padding: u32,
 }
 
 /// `SampleRecord`, shaders/evaluate.wgsl.
@@ -122,7 +170,7 @@ pub struct JetRecord {
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct LightRecord {
-    /// Centre relative to the eye.
+    /// Centre relative to the viewpoint.
     pub center: [f32; 3],
     /// Period of the pattern.
     pub spacing: f32,
@@ -134,6 +182,10 @@ pub struct LightRecord {
     pub axis_y: [f32; 3],
     /// Half extent along it.
     pub half_y: f32,
+    /// Direction of sight in an orthographic view, else zero.
+    pub sight: [f32; 3],
+    /// How much of the position relative to the viewpoint the line of sight takes: 1 in perspective, else 0.
+    pub from_eye: f32,
 }
 
 /// `Shade`, shaders/shade.wgsl.

@@ -1,6 +1,8 @@
 //! WGSL sources: which files make up a pass, and the constants that Rust shares with them.
 
 use super::NO_PATCH;
+use super::charts::BAND;
+use super::records::ChartRecord;
 use super::tables::TABLE_LEVELS;
 use crate::stam::LEVELS;
 
@@ -27,6 +29,20 @@ pub const TABLE_WIDTH: u32 = 4096;
 pub const BLOCK_ROWS: u32 = 8192;
 /// Texels of one level of an irregular patch: 9 rows of 4 points, x, y and z each.
 pub const LEVEL_TEXELS: u32 = 27;
+/// Texels of a chart.
+pub const CHART_TEXELS: u32 = (size_of::<ChartRecord>() / 16) as u32;
+/// How a sample came to its point: not at all.
+pub const STATE_NONE: u32 = 0;
+/// Solved on the host.
+pub const STATE_SOLVED: u32 = 1;
+/// By Newton's method on a chart.
+pub const STATE_CHART: u32 = 2;
+/// Added where the method did not converge on a chart that may lie before what was found.
+pub const STATE_DOUBTFUL: u32 = 4;
+/// Samples by which Newton's last step may move: its error is the square of that over the size of the chart.
+const SETTLED: f32 = 0.005;
+/// Newton's steps at most; the error halves each time at least.
+const MOST_STEPS: u32 = 24;
 /// Distance in pixels by which the borders of proxy patches overlap: large against the rasteriser's grid of 1/256 pixel
 /// on which vertices that differ by rounding may land one step apart, small against a pixel. (Measured: in 36 million
 /// pixels of a cube at level 7, 6 fall through without it, none with it.)
@@ -119,8 +135,14 @@ pub const RESOLVE: Module =
 pub const EVALUATE: Module =
     Module { name: "evaluate", files: &[RECORDS, TABLES, LIMIT_POINT, include_str!("../../shaders/evaluate.wgsl")] };
 
+/// Samples solved on the host.
+pub const SPECKS: Module = Module { name: "specks", files: &[include_str!("../../shaders/specks.wgsl")] };
+/// What each sample sees first.
+pub const CHARTS: Module = Module { name: "charts", files: &[include_str!("../../shaders/charts.wgsl")] };
+
 /// All modules.
-pub const MODULES: [Module; 8] = [VISIBILITY, RECTANGLE, LIMIT, POLYGON, SHADE, POINTS, RESOLVE, EVALUATE];
+pub const MODULES: [Module; 10] =
+    [SPECKS, CHARTS, VISIBILITY, RECTANGLE, LIMIT, POLYGON, SHADE, POINTS, RESOLVE, EVALUATE];
 
 /// WGSL declarations of the constants above.
 fn constants(variant: &Variant) -> String {
@@ -137,8 +159,14 @@ fn constants(variant: &Variant) -> String {
         ("LEVEL_TEXELS", LEVEL_TEXELS),
         ("CENTRE_LEVEL", LEVELS as u32),
         ("NO_PATCH", NO_PATCH),
+        ("CHART_TEXELS", CHART_TEXELS),
+        ("STATE_SOLVED", STATE_SOLVED),
+        ("STATE_CHART", STATE_CHART),
+        ("STATE_DOUBTFUL", STATE_DOUBTFUL),
+        ("MOST_STEPS", MOST_STEPS),
     ];
     let mut text: String = counts.iter().map(|(name, value)| format!("const {name} = {value}u;\n")).collect();
-    text.push_str(&format!("const PUSH = {PUSH:?};\nconst HAS_TAIL = {};\n", variant.has_tail));
+    text.push_str(&format!("const PUSH = {PUSH:?};\nconst SETTLED = {SETTLED:?};\nconst BAND = {BAND:?};\n"));
+    text.push_str(&format!("const HAS_TAIL = {};\n", variant.has_tail));
     text
 }

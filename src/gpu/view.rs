@@ -3,7 +3,7 @@
 use super::records::{FrameRecord, LightRecord, ResolveRecord, ShadeRecord};
 use super::shader::{PATTERN_CIRCLES, PATTERN_LATTICE, PATTERN_PICTURE, PATTERN_STRIPES};
 use super::{GpuError, Tables};
-use crate::field::{Camera, Field, Light, Pattern};
+use crate::field::{Camera, Field, Light, Pattern, Projection};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -22,8 +22,10 @@ const MAX_SIZE: u32 = 32_768;
 /// How position and normal come to a pixel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Pipeline {
-    /// Evaluated on the limit surface at the pixel's (patch, u, v).
+    /// Evaluated on the limit surface where each sample's ray meets it first; nothing depends on a proxy.
     #[default]
+    Exact,
+    /// Evaluated on the limit surface at the pixel's (patch, u, v) that the rasterised proxy gives.
     Limit,
     /// Interpolated from the proxy's vertices, which have limit positions and normals (Yasui & Kanai 2004, fig. 7b).
     Polygon,
@@ -70,7 +72,7 @@ pub struct View {
     pub pattern: Pattern,
     /// How position and normal come to a pixel.
     pub pipeline: Pipeline,
-    /// Level of the proxy tessellation, 0 to [`MAX_PROXY_LEVEL`]: 2^level parts a quad
+    /// Level of the proxy tessellation, in the exact pipeline the least one of its charts, 0 to [`MAX_PROXY_LEVEL`]: 2^level parts a quad
     /// face. `None`: as fine as the picture
     /// asks for ([`View::proxy_level_for`]).
     pub proxy_level: Option<u32>,
@@ -90,7 +92,7 @@ impl View {
             camera,
             field: Field::Reflection(light),
             pattern: Pattern::Stripes { width: 0.42 },
-            pipeline: Pipeline::Limit,
+            pipeline: Pipeline::default(),
             proxy_level: None,
             samples: 2,
             enlarge: 1.0,
@@ -98,7 +100,8 @@ impl View {
         }
     }
 
-    pub(super) fn light(&self) -> &Light {
+    /// The light plane of the field.
+    pub fn light(&self) -> &Light {
         match &self.field {
             Field::Reflection(light) => light,
         }
@@ -107,7 +110,7 @@ impl View {
     /// Refuses what cannot be drawn.
     pub(super) fn check(&self) -> Result<(), GpuError> {
         let fail = |message: String| Err(GpuError::View(message));
-        let Camera { eye, target, up, fov, size } = self.camera;
+        let Camera { eye, target, up, projection, size } = self.camera;
         if size.iter().any(|n| !(1..=MAX_SIZE).contains(n)) {
             return fail(format!("picture size {}x{}: each side must be 1 to {MAX_SIZE} pixels", size[0], size[1]));
         }
@@ -117,8 +120,14 @@ impl View {
         if (target - eye).normalize().cross(up.normalize_or_zero()).length() < 1e-9 {
             return fail("the camera's up direction must not be zero or parallel to the line of sight".into());
         }
-        if !(fov > 0.0 && fov < 180.0) {
-            return fail(format!("field of view {fov}: must be between 0 and 180 degrees"));
+        match projection {
+            Projection::Perspective { fov } if !(fov > 0.0 && fov < 180.0) => {
+                return fail(format!("field of view {fov}: must be between 0 and 180 degrees"));
+            }
+            Projection::Orthographic { height } if !(height > 0.0 && height.is_finite()) => {
+                return fail(format!("view height {height}: must be a finite length above 0"));
+            }
+            _ => {}
         }
         if let Some(level) = self.proxy_level.filter(|&level| level > MAX_PROXY_LEVEL) {
             return fail(format!("proxy level {level}: must be 0 to {MAX_PROXY_LEVEL}"));
@@ -155,7 +164,7 @@ impl View {
                     self.samples
                 )
             }
-            Pipeline::Limit | Pipeline::Polygon if self.enlarge != 1.0 => {
+            pipeline if pipeline != Pipeline::Points && self.enlarge != 1.0 => {
                 format!("enlargement {}: only the points pipeline takes one", self.enlarge)
             }
             _ => return Ok(()),
@@ -175,56 +184,92 @@ impl View {
         })
     }
 
-    /// Every patch as this camera sees it, composed in f64, then rounded: clip-space x, y, w of
-    /// its origin; the eye relative to its origin.
-    pub(super) fn patch_views(&self, tables: &Tables) -> Vec<[[f32; 4]; 2]> {
+    /// The linear part of the projection: rows of clip-space x, y and of the third coordinate, by lengths in
+    /// [`Tables::unit`]. The third one is w in perspective, where z is the near distance, so that z/w = near/distance; in
+    /// an orthographic view it is z, from 1 at the near distance to 0 at the far one, and w is 1.
+    fn clip_rows(&self, tables: &Tables) -> [DVec3; 3] {
         let axes = self.camera.axes();
-        let unit = tables.unit();
+        let rows = [axes.right * axes.scale[0], axes.up * axes.scale[1]];
+        if !self.camera.is_orthographic() {
+            return [rows[0], rows[1], axes.forward];
+        }
+        let [near, far] = self.camera.depth_range(tables.bounds());
+        [rows[0], rows[1], axes.forward / (near - far)].map(|row| row * tables.unit())
+    }
+
+    /// The point that positions are told relative to where light is concerned: the eye, or the point of an orthographic
+    /// line of sight beside the middle of the surface, wherever on it the eye may be.
+    fn viewpoint(&self, tables: &Tables) -> DVec3 {
+        let Camera { eye, .. } = self.camera;
+        if !self.camera.is_orthographic() {
+            return eye;
+        }
+        let [low, high] = tables.bounds();
+        let forward = self.camera.axes().forward;
+        eye + forward * forward.dot((low + high) * 0.5 - eye)
+    }
+
+    /// Every patch as this camera sees it, composed in f64, then rounded: the three clip-space coordinates of its origin;
+    /// the viewpoint relative to its origin.
+    pub(super) fn patch_views(&self, tables: &Tables) -> Vec<[[f32; 4]; 2]> {
+        let (rows, unit, viewpoint) = (self.clip_rows(tables), tables.unit(), self.viewpoint(tables));
+        let eye = self.camera.eye;
+        // The third coordinate counts from where it is 0.
+        let zero = match self.camera.is_orthographic() {
+            true => eye + self.camera.axes().forward * self.camera.depth_range(tables.bounds())[1],
+            false => eye,
+        };
         let one = |origin: &DVec3| {
-            let d = (*origin - self.camera.eye) / unit;
-            let clip = [axes.scale[0] * axes.right.dot(d), axes.scale[1] * axes.up.dot(d), axes.forward.dot(d)];
-            let [x, y, w] = clip.map(|x| x as f32);
-            let [ex, ey, ez] = (-d).as_vec3().to_array();
-            [[x, y, w, 0.0], [ex, ey, ez, 0.0]]
+            let [x, y, z] =
+                [(0, eye), (1, eye), (2, zero)].map(|(k, start)| rows[k].dot((*origin - start) / unit) as f32);
+            let [ex, ey, ez] = ((viewpoint - *origin) / unit).as_vec3().to_array();
+            [[x, y, z, 0.0], [ex, ey, ez, 0.0]]
         };
         tables.origins.par_iter().map(one).collect()
     }
 
     /// The projection of the part of the picture that `tile` draws.
     pub(super) fn frame_record(&self, tables: &Tables, tile: &Tile) -> FrameRecord {
-        let axes = self.camera.axes();
         let [w, h] = self.camera.size.map(|n| f64::from(n * tile.samples) * tile.enlarge);
         let [tw, th] = tile.size.map(f64::from);
         let [x, y] = tile.origin.map(f64::from);
-        let row = |v: DVec3| v.as_vec3().to_array();
+        let rows = self.clip_rows(tables);
+        let [clip_x, clip_y, clip_depth] = rows.map(|row| row.as_vec3().to_array());
         FrameRecord {
-            clip_x: row(axes.right * axes.scale[0]),
-            near: (self.camera.near(tables.bounds()) / tables.unit()) as f32,
-            clip_y: row(axes.up * axes.scale[1]),
-            focal: (axes.scale[1] * h * 0.5) as f32,
-            clip_w: row(axes.forward),
+            clip_x,
+            near: (self.camera.depth_range(tables.bounds())[0] / tables.unit()) as f32,
+            clip_y,
+            focal: (rows[1].length() * h * 0.5) as f32,
+            clip_depth,
             proxy_level: self.proxy_level_for(tables),
             scale: [(w / tw) as f32, (h / th) as f32],
             shift: [(w / tw - 2.0 * x / tw - 1.0) as f32, (1.0 - h / th + 2.0 * y / th) as f32],
             size: [tw as f32, th as f32],
-            padding: [0.0; 2],
+            orthographic: u32::from(self.camera.is_orthographic()),
+            padding: 0,
         }
     }
 
-    /// The light relative to the eye.
+    /// The light relative to the viewpoint, and lines of sight.
     pub(super) fn light_record(&self, tables: &Tables) -> LightRecord {
         /// Stands for an infinite extent: finite, so that shader arithmetic stays defined.
         const ENDLESS: f64 = 1e30;
         let light = self.light();
         let unit = tables.unit();
         let half = light.half.map(|h| (h / unit).min(ENDLESS) as f32);
+        let (sight, from_eye) = match self.camera.is_orthographic() {
+            true => (self.camera.axes().forward, 0.0),
+            false => (DVec3::ZERO, 1.0),
+        };
         LightRecord {
-            center: ((light.center - self.camera.eye) / unit).as_vec3().to_array(),
+            center: ((light.center - self.viewpoint(tables)) / unit).as_vec3().to_array(),
             spacing: (light.spacing / unit) as f32,
             axis_x: light.axes[0].as_vec3().to_array(),
             half_x: half[0],
             axis_y: light.axes[1].as_vec3().to_array(),
             half_y: half[1],
+            sight: sight.as_vec3().to_array(),
+            from_eye,
         }
     }
 

@@ -1,6 +1,6 @@
 //! Whole files: written beside their destination under another name, then renamed over it.
 
-use std::io::{BufWriter, Write};
+use std::io::{BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
 
 /// Why a file was not written. Whatever stood at the path before still stands there.
@@ -12,6 +12,11 @@ pub struct OutputError {
     /// What the system said.
     pub source: std::io::Error,
 }
+
+/// What a file's content is written to; formats with an index go back to fill it in.
+pub trait WriteSeek: Write + Seek {}
+
+impl<W: Write + Seek> WriteSeek for W {}
 
 fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
@@ -50,7 +55,7 @@ pub fn check_writable(path: &Path) -> Result<(), OutputError> {
 /// The folder does not exist or is not writable, the disk is full, or `content` fails; the destination is untouched then.
 pub fn write_whole(
     path: &Path,
-    content: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
+    content: impl FnOnce(&mut dyn WriteSeek) -> std::io::Result<()>,
 ) -> Result<(), OutputError> {
     let write = || -> std::io::Result<()> {
         let mut writer = BufWriter::new(beside(path)?);

@@ -100,8 +100,7 @@ impl ClassTable {
     /// Phat(n) for n = `level`, 1 to [`LEVELS`], from control points relative to the limit position s0.
     pub fn level_points(&self, level: usize, points: &[DVec3]) -> [DVec3; WINDOW_POINTS] {
         if self.levels.is_empty() {
-            let stepped = self.stepped(level, points);
-            return std::array::from_fn(|point| sparse(&self.windows[point], &stepped));
+            return self.windows_of(&self.stepped(level, points));
         }
         let size = self.limit.len();
         let rows = &self.levels[level - 1];
@@ -126,10 +125,20 @@ impl ClassTable {
     fn stepped(&self, level: usize, points: &[DVec3]) -> Vec<DVec3> {
         let mut stepped = points.to_vec();
         for _ in 1..level {
-            let constant: DVec3 = combine(&self.limit, &stepped);
-            stepped = self.step.iter().map(|row| (sparse(row, &stepped) - constant) / self.lambda).collect();
+            stepped = self.stepped_once(&stepped);
         }
         stepped
+    }
+
+    /// B / lambda times points.
+    pub(super) fn stepped_once(&self, points: &[DVec3]) -> Vec<DVec3> {
+        let constant = combine(&self.limit, points);
+        self.step.iter().map(|row| (sparse(row, points) - constant) / self.lambda).collect()
+    }
+
+    /// A' times points: those of the three windows.
+    pub(super) fn windows_of(&self, points: &[DVec3]) -> [DVec3; WINDOW_POINTS] {
+        std::array::from_fn(|point| sparse(&self.windows[point], points))
     }
 
     /// Memory that the matrices take.

@@ -8,11 +8,13 @@ mod class;
 mod curvature;
 mod evaluate;
 mod modes;
+mod rings;
 mod rows;
 mod surface;
 
 pub use class::{ClassTable, LEVELS, WINDOW_POINTS};
 pub use curvature::Curvature;
+pub use rings::{Rings, WINDOWS};
 pub use surface::{LimitSurface, Net};
 
 use glam::DVec3;

@@ -5,6 +5,7 @@ use crate::mesh::SubdivMesh;
 use crate::patch::{Adjacency, PHANTOM, Patch, PatchError, PatchKind, Patches, RingClass, slot};
 use glam::DVec3;
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// The control net of a patch, as an evaluator wants it.
 #[derive(Debug, Clone)]
@@ -25,13 +26,13 @@ pub enum Net {
     },
 }
 
-/// The limit surface of a mesh.
-#[derive(Debug)]
+/// The limit surface of a mesh. Clones share their data.
+#[derive(Debug, Clone)]
 pub struct LimitSurface {
-    patches: Patches,
-    tables: Vec<ClassTable>,
+    patches: Arc<Patches>,
+    tables: Arc<Vec<ClassTable>>,
     /// Refined points of all levels.
-    points: Vec<DVec3>,
+    points: Arc<Vec<DVec3>>,
     diagonal: f64,
 }
 
@@ -44,7 +45,12 @@ impl LimitSurface {
         let (patches, refiner) = Patches::new(mesh)?;
         let points = refiner.interpolate(&mesh.points)?;
         let tables = patches.classes().par_iter().map(|&class| ClassTable::new(class)).collect();
-        Ok(Self { patches, tables, points, diagonal: mesh.diagonal() })
+        Ok(Self {
+            patches: Arc::new(patches),
+            tables: Arc::new(tables),
+            points: Arc::new(points),
+            diagonal: mesh.diagonal(),
+        })
     }
 
     /// All patches, in ptex order.
@@ -105,7 +111,7 @@ impl LimitSurface {
     }
 
     /// The 16 points of a regular patch, phantom points filled in.
-    pub(super) fn regular_net(&self, patch: usize) -> [DVec3; 16] {
+    pub(crate) fn regular_net(&self, patch: usize) -> [DVec3; 16] {
         let support = self.patches.support(patch);
         let mut net = [DVec3::ZERO; 16];
         for (point, &vertex) in net.iter_mut().zip(support) {

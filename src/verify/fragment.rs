@@ -34,7 +34,7 @@ pub(super) fn run(
     let largest = all_patches(subject, gpu, &tables, bins)?;
     let Some(scout) = Scout::new(subject.surface) else { return Ok(()) };
     let look = |camera: Camera| {
-        let light = scout.light(camera.eye, camera.up);
+        let light = scout.light(&camera);
         gpu.inspect(&tables, &View::new(camera, light))
     };
     let covered = |image: &SurfaceImage| image.patch.iter().any(|&patch| patch != NO_PATCH);

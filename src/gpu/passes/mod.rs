@@ -1,5 +1,6 @@
 //! The passes: `NAME.rs` here runs `shaders/NAME.wgsl`.
 
+pub mod charts;
 pub mod evaluate;
 pub mod limit;
 pub mod points;
@@ -21,6 +22,8 @@ use wgpu::{BufferUsages, TextureFormat, TextureUsages};
 pub struct Passes {
     /// Whether they read tables with levels given by picked points.
     has_tail: bool,
+    specks: OnceLock<wgpu::RenderPipeline>,
+    charts: OnceLock<wgpu::RenderPipeline>,
     visibility: OnceLock<wgpu::RenderPipeline>,
     visibility_polygon: OnceLock<wgpu::RenderPipeline>,
     visibility_plain: OnceLock<wgpu::RenderPipeline>,
@@ -34,6 +37,7 @@ pub struct Passes {
     polygon_full: OnceLock<wgpu::RenderPipeline>,
     shade: OnceLock<wgpu::RenderPipeline>,
     resolve: OnceLock<wgpu::RenderPipeline>,
+    resolve_linear: OnceLock<wgpu::RenderPipeline>,
     evaluate: OnceLock<wgpu::ComputePipeline>,
 }
 
@@ -51,13 +55,16 @@ impl Passes {
     }
 
     /// Compiles what a picture needs, in parallel.
-    pub(super) fn prepare(&self, device: &Device, pipeline: Pipeline) {
+    pub(super) fn prepare(&self, device: &Device, pipeline: Pipeline, colour: Colour) {
         rayon::join(
-            || visibility::pipeline(self, device, pipeline),
+            || match pipeline {
+                Pipeline::Exact => charts::prepare(self, device),
+                _ => drop(visibility::pipeline(self, device, pipeline)),
+            },
             || {
                 limit::pipeline(self, device, pipeline);
                 shade::pipeline(self, device);
-                resolve::pipeline(self, device);
+                resolve::pipeline(self, device, colour);
             },
         );
     }
@@ -105,6 +112,8 @@ pub(super) struct Visible {
     pub uv: wgpu::Texture,
     /// Above 0 where there is surface: the mask of the passes that follow.
     depth: wgpu::Texture,
+    /// How the exact pipeline came to each point.
+    pub certificate: Option<wgpu::Texture>,
     /// Position and normal of the proxy, for the polygon pipeline.
     proxy: Option<[wgpu::Texture; 2]>,
 }
@@ -126,12 +135,30 @@ pub(super) struct PictureTargets {
 }
 
 const PATCH_FORMAT: TextureFormat = TextureFormat::R32Uint;
+const CERTIFICATE_FORMAT: TextureFormat = TextureFormat::R32Uint;
 const UV_FORMAT: TextureFormat = TextureFormat::Rg32Float;
 const DEPTH_FORMAT: TextureFormat = TextureFormat::Depth32Float;
 const SURFACE_FORMAT: TextureFormat = TextureFormat::Rgba32Float;
 const PACKED_FORMAT: TextureFormat = TextureFormat::Rgba32Uint;
 const SAMPLE_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
-const COLOUR_FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
+
+/// What a picture's colour is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Colour {
+    /// To be looked at: 8-bit sRGB over the background.
+    Display,
+    /// To be worked with: linear f32, premultiplied.
+    Linear,
+}
+
+impl Colour {
+    fn format(self) -> TextureFormat {
+        match self {
+            Colour::Display => TextureFormat::Rgba8Unorm,
+            Colour::Linear => TextureFormat::Rgba32Float,
+        }
+    }
+}
 
 fn target(device: &Device, size: [u32; 2], format: TextureFormat) -> wgpu::Texture {
     device.device.create_texture(&wgpu::TextureDescriptor {
@@ -153,6 +180,7 @@ impl Visible {
             patch: texture(PATCH_FORMAT),
             uv: texture(UV_FORMAT),
             depth: texture(DEPTH_FORMAT),
+            certificate: (pipeline == Pipeline::Exact).then(|| texture(CERTIFICATE_FORMAT)),
             proxy: (pipeline == Pipeline::Polygon).then(|| [SURFACE_FORMAT; 2].map(texture)),
         }
     }
@@ -166,11 +194,11 @@ impl SurfaceTargets {
 }
 
 impl PictureTargets {
-    pub fn new(device: &Device, tile: &Tile) -> PictureTargets {
+    pub fn new(device: &Device, tile: &Tile, colour: Colour) -> PictureTargets {
         PictureTargets {
             surface: target(device, tile.size, PACKED_FORMAT),
             samples: target(device, tile.size, SAMPLE_FORMAT),
-            colour: target(device, tile.pixels()[1], COLOUR_FORMAT),
+            colour: target(device, tile.pixels()[1], colour.format()),
         }
     }
 }

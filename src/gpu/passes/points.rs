@@ -1,7 +1,7 @@
 //! `shaders/points.wgsl`: exact positions of the proxy's fragments, and the fragments drawn as points.
 
-use super::{COLOUR_FORMAT, DEPTH_FORMAT, PACKED_FORMAT, PATCH_FORMAT, SAMPLE_FORMAT, SURFACE_FORMAT, UV_FORMAT};
-use super::{Passes, PictureTargets, Scene, Visible, bind, draw_fullscreen, fullscreen, target, whole};
+use super::{Colour, Passes, PictureTargets, Scene, Visible, bind, draw_fullscreen, fullscreen, target, whole};
+use super::{DEPTH_FORMAT, PACKED_FORMAT, PATCH_FORMAT, SAMPLE_FORMAT, SURFACE_FORMAT, UV_FORMAT};
 use crate::gpu::device::Device;
 use crate::gpu::view::Tile;
 use crate::gpu::{GpuError, shader::POINTS};
@@ -60,12 +60,12 @@ pub struct Landing {
 }
 
 impl Landing {
-    pub fn new(device: &Device, tile: &Tile) -> Landing {
+    pub fn new(device: &Device, tile: &Tile, colour: Colour) -> Landing {
         let picture = PictureTargets {
             // Colours arrive finished.
             surface: target(device, [1, 1], PACKED_FORMAT),
             samples: target(device, tile.size, SAMPLE_FORMAT),
-            colour: target(device, tile.pixels()[1], COLOUR_FORMAT),
+            colour: target(device, tile.pixels()[1], colour.format()),
         };
         Landing { picture, depth: target(device, tile.size, DEPTH_FORMAT) }
     }

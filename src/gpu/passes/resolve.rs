@@ -1,12 +1,16 @@
-//! `shaders/resolve.wgsl`: the mean of each pixel's samples over the background, in sRGB.
+//! `shaders/resolve.wgsl`: the mean of each pixel's samples, over the background in sRGB or as it is.
 
-use super::{COLOUR_FORMAT, Passes, PictureTargets, Scene, bind, draw_fullscreen, fullscreen, whole};
+use super::{Colour, Passes, PictureTargets, Scene, bind, draw_fullscreen, fullscreen, whole};
 use crate::gpu::device::Device;
 use crate::gpu::view::Tile;
 use crate::gpu::{GpuError, shader::RESOLVE};
 
-pub fn pipeline<'a>(passes: &'a Passes, device: &Device) -> &'a wgpu::RenderPipeline {
-    passes.resolve.get_or_init(|| fullscreen(passes, device, &RESOLVE, "resolve", &[COLOUR_FORMAT], false))
+pub fn pipeline<'a>(passes: &'a Passes, device: &Device, colour: Colour) -> &'a wgpu::RenderPipeline {
+    let (pipeline, entry) = match colour {
+        Colour::Display => (&passes.resolve, "resolve"),
+        Colour::Linear => (&passes.resolve_linear, "resolve_linear"),
+    };
+    pipeline.get_or_init(|| fullscreen(passes, device, &RESOLVE, entry, &[colour.format()], false))
 }
 
 pub fn run(
@@ -15,8 +19,9 @@ pub fn run(
     scene: &Scene<'_>,
     picture: &PictureTargets,
     tile: &Tile,
+    colour: Colour,
 ) -> Result<(), GpuError> {
-    let pipeline = pipeline(passes, device);
+    let pipeline = pipeline(passes, device, colour);
     let samples = whole(&picture.samples);
     let record = device.buffer("the background", &[scene.view.resolve_record(tile)], wgpu::BufferUsages::UNIFORM)?;
     let resources = [(0, wgpu::BindingResource::TextureView(&samples)), (1, record.as_entire_binding())];

@@ -39,7 +39,7 @@ impl ProxyBuffers {
 
 pub fn pipeline<'a>(passes: &'a Passes, device: &Device, pipeline: Pipeline) -> &'a wgpu::RenderPipeline {
     match pipeline {
-        Pipeline::Limit => {
+        Pipeline::Exact | Pipeline::Limit => {
             passes.visibility.get_or_init(|| create(passes, device, ["vertex", "visible"], &[PATCH_FORMAT, UV_FORMAT]))
         }
         Pipeline::Points => passes

@@ -22,13 +22,14 @@ mod pack;
 mod source;
 
 pub use layout::{BUDGET, TableLayout, bytes};
-pub use source::{PatchNet, PatchSource};
+pub use source::{PatchNet, PatchNets, PatchSource};
 
 use super::GpuError;
 use super::device::Device;
 use crate::stam::{ClassTable, LEVELS, WINDOW_POINTS};
 use glam::DVec3;
 use layout::Plan;
+use std::sync::Arc;
 
 /// Levels stored per irregular patch.
 pub const TABLE_LEVELS: usize = 24;
@@ -43,6 +44,8 @@ pub struct Tables {
     pub(super) origins: Vec<DVec3>,
     /// Refinement levels and transition bits of every patch.
     pub(super) cells: Vec<([u8; 2], u8)>,
+    /// Where the patches came from.
+    pub(super) source: Arc<dyn PatchSource>,
     bounds: [DVec3; 2],
     layout: TableLayout,
     size: u64,
@@ -131,6 +134,7 @@ pub(super) fn upload<S: PatchSource + ?Sized>(
         scales: device.table("the powers of lambda", &scales, wgpu::TextureFormat::Rg32Float)?,
         cells,
         origins,
+        source: source.shared(),
         bounds,
         layout: plan.layout,
         unit,

@@ -1,0 +1,86 @@
+//! From the world to homogeneous sample coordinates, in f64.
+
+use crate::field::Axes;
+use crate::gpu::View;
+use crate::gpu::records::LensRecord;
+use crate::gpu::view::Tile;
+use glam::DVec3;
+
+/// The projection onto the samples of a tile: sample (i,j) has its centre at (i + 1/2, j + 1/2).
+#[derive(Debug, Clone)]
+pub(super) struct Lens {
+    eye: DVec3,
+    /// Rows of x and y times weight, and of the depth.
+    rows: [DVec3; 3],
+    /// Constants of x and y, times weight.
+    shift: [f64; 2],
+    /// The weight is the depth; else it is 1.
+    pub perspective: bool,
+    /// Depth below which nothing is seen, and that of the farthest point.
+    pub near: f64,
+    far: f64,
+    /// Samples of the tile.
+    pub size: [f64; 2],
+}
+
+impl Lens {
+    /// For a surface inside `bounds`.
+    pub fn new(view: &View, tile: &Tile, bounds: [DVec3; 2]) -> Lens {
+        let camera = &view.camera;
+        let Axes { right, up, forward, scale } = camera.axes();
+        let [width, height] = camera.size.map(|n| 0.5 * f64::from(n * tile.samples));
+        let [x, y] = tile.origin.map(f64::from);
+        let [near, far] = camera.depth_range(bounds);
+        Lens {
+            eye: camera.eye,
+            rows: [right * (scale[0] * width), up * (-scale[1] * height), forward],
+            shift: [width - x, height - y],
+            perspective: !camera.is_orthographic(),
+            near,
+            far,
+            size: tile.size.map(f64::from),
+        }
+    }
+
+    /// x and y times weight, and depth, of a point given relative to `origin`.
+    pub fn project(&self, origin: DVec3, point: DVec3) -> [f64; 3] {
+        let d = (origin - self.eye) + point;
+        let [x, y, depth] = self.rows.map(|row| row.dot(d));
+        let weight = self.weight(depth);
+        [x + self.shift[0] * weight, y + self.shift[1] * weight, depth]
+    }
+
+    /// What x and y of a point at this depth are multiplied by.
+    pub fn weight(&self, depth: f64) -> f64 {
+        if self.perspective { depth } else { 1.0 }
+    }
+
+    /// Change of the weight with that of the depth.
+    pub fn weight_change(&self, depth: f64) -> f64 {
+        if self.perspective { depth } else { 0.0 }
+    }
+
+    /// Centre of a sample in normalised device coordinates, and what the depth buffer shows of a depth: reversed, so that
+    /// the nearer is the greater.
+    pub fn place(&self, sample: [u32; 2], depth: f64) -> [f32; 3] {
+        let [x, y] = [0, 1].map(|k| (2.0 * f64::from(sample[k]) + 1.0) / self.size[k] - 1.0);
+        let shown = if self.perspective { self.near / depth } else { (self.far - depth) * self.scale() };
+        [x as f32, -y as f32, shown as f32]
+    }
+
+    fn scale(&self) -> f64 {
+        1.0 / (self.far - self.near)
+    }
+
+    /// As shaders/charts.wgsl reads it.
+    pub fn record(&self) -> LensRecord {
+        LensRecord {
+            size: self.size.map(|n| n as f32),
+            perspective: if self.perspective { 1.0 } else { 0.0 },
+            near: self.near as f32,
+            far: self.far as f32,
+            scale: self.scale() as f32,
+            padding: [0.0; 2],
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! What every sample sees first, exactly: patches cut into charts, in f64.
+//!
+//! # Theory
+//! The projection of the surface is folded at its silhouette and one-to-one elsewhere. A *chart* is a piece of a patch on which the
+//! projection is so close to affine that Newton's method must find the point that a sample sees, or that there is none. With
+//! G(u,v) = (x,y) - p weight (homogeneous, so that perspective needs no division), J its derivative, J0 that in the middle,
+//! and q >= |J0^-1 J - 1| in the maximum norm all over the piece and for all samples p in its bounds (from the control vectors of
+//! the derivative nets, which are hulls): G is one-to-one for q < 1, and a Newton step, kept inside the piece, brings (u,v)
+//! nearer to the solution by 2q / (1 - q) at least, whatever the start.
+//! *Proof.* G(y) - G(x) = K (y - x) with K the mean of J on the way from x to y; |J0^-1 K - 1| <= q too. For G(y) = 0 the step
+//! from x leads to x' = x + J(x)^-1 K (y - x), so x' - y = (J(x)^-1 K - 1)(y - x), and |J^-1 K - 1| = |(J0^-1 J)^-1 (J0^-1 K -
+//! J0^-1 J)| <= 2q / (1 - q). Clamping to the square brings x' nearer to y, which lies in it.
+//!
+//! # Changes
+//! Yasui & Kanai 2004 evaluate at parameters that the rasteriser interpolates, so positions miss their pixels and silhouettes are
+//! those of the proxy. Here nothing depends on a proxy. Pieces are halved until they are charts, out of sight (hulls beyond the
+//! picture or between the centres of the samples), or cover at most a few samples, which are solved at once in f64: along silhouettes only pieces
+//! that hold the centre of a sample go on being halved, so they cost some work a sample and not a mesh finer than it. No patch
+//! is left to its neighbours by adjacency either: each chart answers for its own square, within 0.002 samples.
+//!
+//! # Practice
+//! [`Charts::new`] cuts all patches for one tile of a picture, in parallel, in the order of the patches; the adapter draws every
+//! chart as the parallelogram that must hold it, with Newton's method in each fragment (`shaders/charts.wgsl`) and depth from the
+//! point that was found, and what was solved here as points ([`SpeckRecord`]); the depth buffer keeps what is seen first.
+
+mod divide;
+mod lens;
+mod piece;
+mod solve;
+
+use super::View;
+use super::records::{ChartRecord, LensRecord, SpeckRecord};
+use super::tables::Tables;
+use super::view::Tile;
+use divide::{Divider, Harvest};
+use lens::Lens;
+use rayon::prelude::*;
+
+/// Distance in samples within which the border of a piece is taken for its inside, so that neighbours leave no gap: a
+/// hundred times what f32 rounds in a chart, a fifth of the 0.01 pixel within which silhouettes are to be right.
+pub(super) const BAND: f64 = 2e-4;
+
+/// q up to which a piece is a chart: Newton's error shrinks to a half at least each step, in practice quadratically.
+const MAX_DISTORTION: f64 = 0.3;
+
+/// How the projection of a piece looks from its middle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Frame {
+    /// Sample coordinates near the middle, exact in f32.
+    centre: [f64; 2],
+    /// Depth in the middle.
+    depth: f64,
+    /// Weight in the middle: the depth in perspective, else 1.
+    weight: f64,
+    /// J0^-1.
+    inverse: [[f64; 2]; 2],
+    /// (u,v) that the linear map gives `centre`.
+    start: [f64; 2],
+    /// q.
+    distortion: f64,
+}
+
+impl Frame {
+    /// Half the side of the square round (1/2, 1/2) in which the linear map sees every sample that the chart covers: it errs
+    /// by q times the distance from the middle. And a thousandth more, for the rounding of the parallelogram's corners.
+    fn half(&self) -> f64 {
+        let band = self.inverse.iter().map(|[a, b]| BAND * (a.abs() + b.abs())).fold(0.0, f64::max);
+        0.501 * (1.0 + self.distortion) + 2.0 * band
+    }
+}
+
+/// Everything that the samples of a tile may see.
+#[derive(Debug)]
+pub(super) struct Charts {
+    pub charts: Vec<ChartRecord>,
+    pub specks: Vec<SpeckRecord>,
+    pub lens: LensRecord,
+}
+
+impl Charts {
+    /// Cuts all patches as `tile` of the picture sees them.
+    pub fn new(tables: &Tables, view: &View, tile: &Tile) -> Charts {
+        /// Patches a job.
+        const JOB: usize = 64;
+        let lens = Lens::new(view, tile, tables.bounds());
+        let level = view.proxy_level.unwrap_or(0) as u8;
+        let count = if divide::sees_box(&lens, tables.bounds()) { tables.patches() } else { 0 };
+        let harvests: Vec<Harvest> = (0..count.div_ceil(JOB))
+            .into_par_iter()
+            .map(|job| {
+                let mut divider = Divider::new(&lens, level);
+                for patch in job * JOB..((job + 1) * JOB).min(count) {
+                    divider.patch(patch as u32, tables.cells[patch].0, tables.source.nets(patch));
+                }
+                divider.out
+            })
+            .collect();
+        let (mut charts, mut specks) = (Vec::new(), Vec::new());
+        for harvest in harvests {
+            charts.extend(harvest.charts);
+            specks.extend(harvest.specks);
+        }
+        Charts { charts, specks, lens: lens.record() }
+    }
+}
