@@ -23,3 +23,20 @@ fn limit_full(@builtin(position) position: vec4f) -> Surface {
     let p = limit_at(pixel, patch_id);
     return surface(patch_id, p.position, p.normal);
 }
+
+// The same as a compute pass: `--stage compute`.
+@group(2) @binding(0) var packed_out: texture_storage_2d<rgba32uint, write>;
+
+@compute @workgroup_size(TILE_SIDE, TILE_SIDE)
+fn limit_compute(@builtin(global_invocation_id) id: vec3u) {
+    if any(id.xy >= textureDimensions(visible_patch)) {
+        return;
+    }
+    let found = textureLoad(visible_patch, id.xy, 0).x;
+    var packed = vec4u(0u);
+    if found > 0u {
+        let p = limit_at(id.xy, found - 1u);
+        packed = packed_surface(found - 1u, p.position, p.normal);
+    }
+    textureStore(packed_out, id.xy, packed);
+}

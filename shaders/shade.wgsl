@@ -74,10 +74,7 @@ fn radiance(field: vec2f, jx: vec2f, jy: vec2f) -> vec3f {
     return on * inside;
 }
 
-@fragment
-fn shade(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    let pixel = vec2i(position.xy);
-    let s = textureLoad(packed, pixel, 0);
+fn shaded(pixel: vec2i, s: vec4u) -> vec4f {
     let angles = unpack2x16snorm(s.w);
     let facing = abs(angles.x);
     // Towards the eye, whichever side is seen.
@@ -94,4 +91,27 @@ fn shade(@builtin(position) position: vec4f) -> @location(0) vec4f {
     // Tubes far along the plane fade out before its horizon cuts them off.
     let lit = radiance(f, jx, jy) * smoothstep(0.0, 0.15, angles.y);
     return vec4f(mix(body, shade_in.tube, lit), 1.0);
+}
+
+@fragment
+fn shade(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    let pixel = vec2i(position.xy);
+    return shaded(pixel, textureLoad(packed, pixel, 0));
+}
+
+// The same as a compute pass: `--stage compute`.
+@group(1) @binding(0) var samples_out: texture_storage_2d<rgba16float, write>;
+
+@compute @workgroup_size(TILE_SIDE, TILE_SIDE)
+fn shade_compute(@builtin(global_invocation_id) id: vec3u) {
+    if any(id.xy >= textureDimensions(packed)) {
+        return;
+    }
+    let pixel = vec2i(id.xy);
+    let s = textureLoad(packed, pixel, 0);
+    var colour = vec4f(0.0);
+    if any(s != vec4u(0u)) {
+        colour = shaded(pixel, s);
+    }
+    textureStore(samples_out, pixel, colour);
 }

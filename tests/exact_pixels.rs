@@ -16,7 +16,7 @@ use pixels::{Judge, Limits, Pixels, Report};
 use scenes::{Scene, inside, million_to_one, thousandfold, views};
 
 /// The pipeline that must be exact.
-const PIPELINE: Pipeline = Pipeline::Limit;
+const PIPELINE: Pipeline = Pipeline::Exact;
 
 /// What the pipeline saw.
 fn seen(scene: &Scene, pipeline: Pipeline, level: Option<u32>) -> Pixels {
@@ -48,14 +48,12 @@ fn assert_exact(scenes: &[Scene], levels: &[Option<u32>]) {
 
 /// Fitted, grazing, and near to what is special in each mesh.
 #[test]
-#[ignore = "PIPELINE is not exact yet"]
 fn views_are_exact() {
     assert_exact(&views(), &[None]);
 }
 
 /// The proxy decides where fragments are, not what they see.
 #[test]
-#[ignore = "PIPELINE is not exact yet"]
 fn proxy_levels_do_not_matter() {
     let fitted: Vec<Scene> = views().into_iter().filter(|scene| scene.name.ends_with("fit")).collect();
     let levels = [0, 1, 2, 3, 5].map(Some);
@@ -63,19 +61,16 @@ fn proxy_levels_do_not_matter() {
 }
 
 #[test]
-#[ignore = "PIPELINE is not exact yet"]
 fn an_eye_inside_is_exact() {
     assert_exact(&[inside("cube.obj"), inside("corner.obj")], &[Some(1), None]);
 }
 
 #[test]
-#[ignore = "PIPELINE is not exact yet"]
 fn close_ups_are_exact() {
     assert_exact(&thousandfold(), &[Some(3), None]);
 }
 
 #[test]
-#[ignore = "PIPELINE is not exact yet"]
 fn far_and_near_are_exact() {
     assert_exact(&[million_to_one()], &[Some(2), None]);
 }

@@ -29,8 +29,8 @@ fn inspect(tables: &Tables, view: &View) -> SurfaceImage {
     gpu().inspect(tables, view).expect("the adapter works")
 }
 
-/// What landed on a pixel is a point of the limit surface that projects into that pixel: on all meshes, from anywhere, near
-/// the origin and far away.
+/// What landed on a pixel is a point of the limit surface that projects into that pixel: on all meshes, from anywhere, in
+/// perspective and orthographic views, near the origin and far away.
 #[test]
 fn points_are_exact_and_on_their_pixels() {
     let mut random = Random::new(3);
@@ -44,6 +44,9 @@ fn points_are_exact_and_on_their_pixels() {
         let mut view = view(&surface, 2, 1.3);
         let side = dvec3(random.next() - 0.5, random.next() - 0.5, random.next() - 0.5).normalize();
         view.camera.eye = view.camera.target + side * view.camera.eye.distance(view.camera.target);
+        if random.next() < 0.5 {
+            view.camera.projection = Projection::Orthographic { height: surface.diagonal() };
+        }
         let image = inspect(&upload(&surface), &view);
         for (i, &patch) in image.patch.iter().enumerate().filter(|(_, patch)| **patch != NO_PATCH) {
             let jet = surface.evaluate(patch as usize, image.uv[i].map(f64::from));

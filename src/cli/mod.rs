@@ -1,7 +1,9 @@
 //! The command line: a thin layer of typed flags over the library.
 
+mod account;
 mod args;
 mod eval;
+mod frames;
 mod info;
 mod render;
 mod rig;
@@ -83,6 +85,7 @@ pub fn run() -> ExitCode {
             return ExitCode::from(2);
         }
     };
+    discard_unfinished_when_stopped();
     let result = match cli.command {
         Command::Render(args) => render::run(&args),
         Command::Eval(args) => eval::run(&args),
@@ -128,3 +131,49 @@ fn progress(message: String) -> indicatif::ProgressBar {
     bar.enable_steady_tick(std::time::Duration::from_secs(1));
     bar
 }
+
+/// A bar on standard error that counts steps of what takes longer than a second, on a terminal only.
+struct Steps {
+    bar: indicatif::ProgressBar,
+    start: std::time::Instant,
+}
+
+impl Steps {
+    fn new(count: usize, what: &str) -> Steps {
+        let hidden = indicatif::ProgressDrawTarget::hidden();
+        let bar = indicatif::ProgressBar::with_draw_target(Some(count as u64), hidden).with_message(what.to_owned());
+        let style = indicatif::ProgressStyle::with_template("{bar:40} {pos} of {len} {msg}, {eta} left");
+        Steps { bar: style.map(|style| bar.clone().with_style(style)).unwrap_or(bar), start: std::time::Instant::now() }
+    }
+
+    fn done_one(&self) {
+        if self.bar.is_hidden() && self.start.elapsed().as_secs() >= 1 {
+            // Not a terminal: it stays hidden.
+            self.bar.set_draw_target(indicatif::ProgressDrawTarget::stderr());
+        }
+        self.bar.inc(1);
+    }
+}
+
+impl Drop for Steps {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+/// Takes away what is not finished when the process is interrupted or terminated, then lets it die of that.
+#[cfg(unix)]
+fn discard_unfinished_when_stopped() {
+    use signal_hook::consts::{SIGINT, SIGTERM};
+    // Without a handler the worst is a hidden file that stays.
+    let Ok(mut signals) = signal_hook::iterator::Signals::new([SIGINT, SIGTERM]) else { return };
+    std::thread::spawn(move || {
+        for signal in signals.forever() {
+            crate::output::discard_unfinished();
+            let _ = signal_hook::low_level::emulate_default_handler(signal);
+        }
+    });
+}
+
+#[cfg(not(unix))]
+fn discard_unfinished_when_stopped() {}

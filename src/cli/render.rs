@@ -1,16 +1,19 @@
 //! `render`: the picture.
 
+use super::account::Account;
 use super::args::size;
+use super::frames::FramesArgs;
 use super::rig::RigArgs;
-use super::settings::made_by;
-use super::{Failure, load, progress};
+use super::settings::{made_by, mesh_digest};
+use super::{Failure, Steps, load, progress};
 use crate::field::{Pattern, Picture, Scout};
-use crate::gpu::{Gpu, MAX_ENLARGE, MAX_PROXY_LEVEL, MAX_SAMPLES, Pipeline, TableLayout, Timings, View, tables};
-use crate::output::{Layers, check_writable, write_exr, write_png};
+use crate::gpu::{Gpu, MAX_ENLARGE, MAX_PROXY_LEVEL, MAX_SAMPLES, Pipeline, Stage, TableLayout, Tables, View, tables};
+use crate::output::{Heat, Layers, check_writable, heat, read_exr_made_by, read_png_made_by, write_exr, write_png};
 use crate::stam::LimitSurface;
 use clap::{Args, ValueEnum};
+use std::fs::File;
+use std::io::BufReader;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
 
 #[derive(Debug, Args)]
 pub(super) struct RenderArgs {
@@ -34,6 +37,9 @@ pub(super) struct RenderArgs {
     /// Fragments a sample each way of `--pipeline points`, 1 to 8: against its gaps [default: 1]
     #[arg(long, value_name = "F", value_parser = enlargement)]
     pub(super) enlarge: Option<f64>,
+    /// Kind of the passes that evaluate and shade: the picture does not depend on it
+    #[arg(long, value_enum, default_value = "auto")]
+    stage: StageName,
     /// How the tables of irregular patches are stored: auto, expanded, compact or hybrid
     #[arg(long = "tables", value_name = "LAYOUT", default_value_t)]
     pub(super) layout: TableLayout,
@@ -48,6 +54,14 @@ pub(super) struct RenderArgs {
     /// Part of the spacing that shines, 0 to 1 (of circles: their diameter)
     #[arg(long, value_name = "PART", value_parser = part)]
     light_width: Option<f64>,
+    #[command(flatten)]
+    frames: FramesArgs,
+    /// Colour how exact each pixel is instead: its residual, or its Newton steps (.png, one sample a pixel)
+    #[arg(long, value_enum, value_name = "WHAT")]
+    pub(super) show: Option<ShowName>,
+    /// Write certificates, summed up, and timings
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
     /// Print how long each step took
     #[arg(long)]
     timings: bool,
@@ -57,6 +71,22 @@ pub(super) struct RenderArgs {
 pub(super) enum FieldName {
     /// Point of the light plane that the surface mirrors into the eye
     Reflection,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(super) enum StageName {
+    /// Fragment on software adapters, else what took less time over the first tile
+    Auto,
+    Fragment,
+    Compute,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(super) enum ShowName {
+    /// Distance of each pixel's point from its ray, from 1e-6 pixels (dark blue) to 1 (yellow)
+    Residual,
+    /// Newton steps, from none (dark blue: solved on the host) to 6 (yellow)
+    Steps,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -82,13 +112,13 @@ fn part(text: &str) -> Result<f64, String> {
 
 /// What is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Format {
+pub(super) enum Format {
     Png,
     Exr,
 }
 
 impl Format {
-    fn of(path: &Path) -> Result<Format, Failure> {
+    pub(super) fn of(path: &Path) -> Result<Format, Failure> {
         let is = |name: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(name));
         match () {
             () if is("png") => Ok(Format::Png),
@@ -99,81 +129,130 @@ impl Format {
             ))),
         }
     }
-}
 
-/// Names and times of the steps.
-#[derive(Default)]
-struct Clock(Vec<(&'static str, Duration)>);
-
-impl Clock {
-    fn time<R>(&mut self, name: &'static str, step: impl FnOnce() -> R) -> R {
-        let start = Instant::now();
-        let result = step();
-        self.count(name, start.elapsed());
-        result
-    }
-
-    fn count(&mut self, name: &'static str, time: Duration) {
-        match self.0.iter_mut().find(|(known, _)| *known == name) {
-            Some((_, total)) => *total += time,
-            None => self.0.push((name, time)),
+    /// What a file says about how it was made.
+    pub(super) fn made_by(self, path: &Path) -> std::io::Result<Option<String>> {
+        let file = BufReader::new(File::open(path)?);
+        match self {
+            Format::Png => read_png_made_by(file),
+            Format::Exr => read_exr_made_by(file),
         }
-    }
-
-    fn add(&mut self, timings: &Timings) {
-        timings.steps.iter().for_each(|&(name, time)| self.count(name, time));
     }
 }
 
 pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
-    let mut clock = Clock::default();
+    let mut account = Account::default();
     let format = Format::of(&args.output)?;
     args.rig.check()?;
-    check_writable(&args.output)?;
+    args.frames.check()?;
     if args.enlarge.is_some() && !matches!(args.pipeline, PipelineName::Points) {
         return Err(Failure::Bad("--enlarge is for --pipeline points; leave it out, or choose that one".to_owned()));
     }
+    if args.show.is_some() && format == Format::Exr {
+        return Err(Failure::Bad("--show colours a .png; an .exr has the residual as a channel anyway".to_owned()));
+    }
+    args.json.as_deref().map_or(Ok(()), check_writable)?;
+    let paths = args.frames.paths(&args.output)?;
+    check_writable(&paths[0])?;
     let pattern = pattern(args)?;
     let bar = progress("drawing".to_owned());
-    let mesh = clock.time("read", || load(args.mesh.as_deref()))?;
-    let surface = clock.time("patches and classes", || LimitSurface::new(&mesh)).map_err(|e| Failure::of(&mesh, e))?;
-    let scout = clock.time("fit", || Scout::new(&surface)).ok_or_else(|| {
+    let mesh = account.time("read", || load(args.mesh.as_deref()))?;
+    let surface =
+        account.time("patches and classes", || LimitSurface::new(&mesh)).map_err(|e| Failure::of(&mesh, e))?;
+    let scout = account.time("fit", || Scout::new(&surface)).ok_or_else(|| {
         Failure::Bad(format!(
             "{}: no face has a limit surface (holes, or boundary rule none); nothing to draw",
             mesh.name
         ))
     })?;
-    let view = view(args, &scout, pattern)?;
-    let gpu = clock.time("adapter", Gpu::new)?;
-    let uploaded = clock.time("tables", || gpu.upload_as(&surface, args.layout))?;
-    let made_by = made_by(args, &mesh, &view);
-    match format {
-        Format::Png => {
-            let frame = gpu.render(&uploaded, &view)?;
-            clock.add(&frame.timings);
-            clock.time("write", || write_png(&args.output, frame.size, &frame.rgba8, &made_by))?;
-        }
-        Format::Exr => {
-            let (colour, seen) = (gpu.render_linear(&uploaded, &view)?, gpu.inspect(&uploaded, &view)?);
-            clock.add(&colour.timings);
-            clock.add(&seen.timings);
-            let (camera, colour, seen, surface) = (&view.camera, &colour, &seen, &surface);
-            let layers = Layers { camera, colour, seen, surface, made_by: &made_by };
-            clock.time("write", || write_exr(&args.output, &layers))?;
+    let first = view(args, &scout, pattern)?;
+    let digest = mesh_digest(&mesh);
+    let mut shots = Vec::new();
+    for (index, path) in paths.iter().enumerate() {
+        let view = args.frames.view(&first, index as u32);
+        let made_by = made_by(args, digest, &view);
+        if args.frames.is_missing(path, &made_by)? {
+            shots.push(Shot { path, view, made_by });
         }
     }
+    if shots.is_empty() {
+        return Ok(());
+    }
+    let gpu = account.time("adapter", Gpu::new)?;
+    let uploaded = account.time("tables", || gpu.upload_as(&surface, args.layout))?;
+    let steps = match &shots[..] {
+        [_] => None,
+        _ => Some(Steps::new(shots.len(), "frames")),
+    };
+    if steps.is_some() {
+        bar.finish_and_clear();
+    }
+    for shot in &shots {
+        shot.take(format, args.show, &gpu, &uploaded, &surface, &mut account)?;
+        steps.iter().for_each(Steps::done_one);
+    }
     bar.finish_and_clear();
+    drop(steps);
+    account.say_certificate(if args.show.is_some() { 1 } else { args.samples });
+    if let Some(path) = &args.json {
+        account.write(path, gpu.adapter(), if args.show.is_some() { 1 } else { args.samples })?;
+    }
     if args.timings {
-        eprintln!("{:<20} {}", "adapter", gpu.adapter());
-        for (name, time) in &clock.0 {
-            eprintln!("{name:<20} {:>8.1} ms", time.as_secs_f64() * 1e3);
-        }
+        account.say_timings(gpu.adapter());
         for layout in TableLayout::ALL {
             let chosen = if layout == uploaded.layout() { ", chosen" } else { "" };
             eprintln!("{:<20} {:>12} bytes{chosen}", format!("tables {layout}"), tables::bytes(&surface, layout));
         }
     }
     Ok(())
+}
+
+/// A picture to take.
+struct Shot<'a> {
+    path: &'a Path,
+    view: View,
+    made_by: String,
+}
+
+impl Shot<'_> {
+    fn take(
+        &self,
+        format: Format,
+        show: Option<ShowName>,
+        gpu: &Gpu,
+        tables: &Tables,
+        surface: &LimitSurface,
+        account: &mut Account,
+    ) -> Result<(), Failure> {
+        let Shot { path, view, made_by } = self;
+        match (format, show) {
+            (_, Some(show)) => {
+                let seen = gpu.inspect(tables, view)?;
+                account.add(&seen.timings);
+                account.picture((view.pipeline == Pipeline::Exact).then(|| seen.summary()));
+                let what = match show {
+                    ShowName::Residual => Heat::Residual,
+                    ShowName::Steps => Heat::Steps,
+                };
+                account.time("write", || write_png(path, seen.size, &heat(&seen, what), made_by))?;
+            }
+            (Format::Png, None) => {
+                let frame = gpu.render(tables, view)?;
+                account.add(&frame.timings);
+                account.picture(frame.summary);
+                account.time("write", || write_png(path, frame.size, &frame.rgba8, made_by))?;
+            }
+            (Format::Exr, None) => {
+                let (colour, seen) = (gpu.render_linear(tables, view)?, gpu.inspect(tables, view)?);
+                account.add(&colour.timings);
+                account.add(&seen.timings);
+                account.picture(colour.summary);
+                let layers = Layers { camera: &view.camera, colour: &colour, seen: &seen, surface, made_by };
+                account.time("write", || write_exr(path, &layers))?;
+            }
+        }
+        Ok(())
+    }
 }
 
 fn view(args: &RenderArgs, scout: &Scout, pattern: Pattern) -> Result<View, Failure> {
@@ -189,6 +268,11 @@ fn view(args: &RenderArgs, scout: &Scout, pattern: Pattern) -> Result<View, Fail
         PipelineName::Points => Pipeline::Points,
     };
     view.enlarge = args.enlarge.unwrap_or(view.enlarge);
+    view.stage = match args.stage {
+        StageName::Auto => Stage::Auto,
+        StageName::Fragment => Stage::Fragment,
+        StageName::Compute => Stage::Compute,
+    };
     match args.field {
         FieldName::Reflection => Ok(view),
     }

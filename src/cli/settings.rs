@@ -11,7 +11,9 @@ use std::path::Path;
 
 /// The command that makes the picture again, with everything in it that was fitted, and digests of the files that it
 /// reads. On one adapter, pictures of the same line are the same.
-pub(super) fn made_by(args: &RenderArgs, mesh: &SubdivMesh, view: &View) -> String {
+///
+/// `mesh`: the digest of the mesh ([`mesh_digest`]).
+pub(super) fn made_by(args: &RenderArgs, mesh: u64, view: &View) -> String {
     let Camera { eye, target, up, projection, size } = view.camera;
     let light = view.light();
     let mut text = format!("catoptric {} render", env!("CARGO_PKG_VERSION"));
@@ -58,7 +60,10 @@ pub(super) fn made_by(args: &RenderArgs, mesh: &SubdivMesh, view: &View) -> Stri
         add("proxy-level", level.to_string());
     }
     add("samples", view.samples.to_string());
-    let _ = write!(text, " # mesh {:016x}", mesh_digest(mesh));
+    if let Some(show) = &args.show {
+        add("show", value_name(show));
+    }
+    let _ = write!(text, " # mesh {mesh:016x}");
     if let Pattern::Picture(picture) = &view.pattern {
         let mut digest = Digest::new();
         digest.bytes(bytemuck::bytes_of(&picture.size));
@@ -88,7 +93,8 @@ impl Digest {
     }
 }
 
-fn mesh_digest(mesh: &SubdivMesh) -> u64 {
+/// Digest of all that the limit surface depends on.
+pub(super) fn mesh_digest(mesh: &SubdivMesh) -> u64 {
     let mut digest = Digest::new();
     digest.bytes(bytemuck::cast_slice(&mesh.points));
     for list in [&mesh.face_sizes, &mesh.face_vertices, &mesh.holes] {

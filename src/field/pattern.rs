@@ -56,6 +56,15 @@ impl Pattern {
         if on { DVec3::ONE } else { DVec3::ZERO }
     }
 
+    /// Distance along the light's first axis after which the pattern comes back, world units: of a picture that is not
+    /// repeated, its width.
+    pub fn period(&self, light: &Light) -> f64 {
+        match self {
+            Pattern::Picture(_) => 1.0 / self.picture_scale(light).x,
+            _ => light.spacing,
+        }
+    }
+
     /// Factor from plane coordinates in world units to texture coordinates (0 to 1 across the picture, y downwards; add
     /// 0.5). Ones for the other patterns.
     pub fn picture_scale(&self, light: &Light) -> DVec2 {
@@ -134,5 +143,9 @@ mod tests {
         assert_eq!(pattern.radiance(&light, dvec2(-1.0, 0.0)), DVec3::X);
         assert_eq!(pattern.radiance(&light, dvec2(3.9, 1.9)), DVec3::Y);
         assert_eq!(pattern.radiance(&light, dvec2(4.1, 0.0)), DVec3::ZERO);
+        assert_eq!(pattern.period(&light), 8.0);
+        light.half = [f64::INFINITY; 2];
+        assert_eq!(pattern.period(&light), 16.0);
+        assert_eq!(Pattern::Stripes { width: 0.25 }.period(&light), 2.0);
     }
 }

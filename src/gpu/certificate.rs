@@ -104,7 +104,7 @@ impl Summary {
     }
 
     /// Both together.
-    pub(super) fn and(self, other: Summary) -> Summary {
+    pub fn and(self, other: Summary) -> Summary {
         Summary {
             samples: self.samples + other.samples,
             covered: self.covered + other.covered,

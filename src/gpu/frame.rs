@@ -5,7 +5,7 @@ use super::charts::Charts;
 use super::device::Device;
 use super::passes::{self, Colour, Passes, PictureTargets, Scene, SurfaceTargets, Visible};
 use super::view::{Tile, View};
-use super::{GpuError, Pipeline, Tables, paper};
+use super::{GpuError, Pipeline, Stage, Tables, paper};
 use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 use std::time::{Duration, Instant};
@@ -146,8 +146,10 @@ fn draw<T: bytemuck::Pod>(
         let visible = Visible::new(device, &tile, view.pipeline);
         let picture = PictureTargets::new(device, &tile, colour);
         see(device, passes, &scene, &visible, &tile, &mut timings)?;
-        timings.time(limit_step(view), || passes::limit::run(device, passes, &scene, &visible, &picture.surface))?;
-        timings.time("shade", || passes::shade::run(device, passes, &scene, &visible, &picture))?;
+        let stage = choose_stage(device, passes, &scene, &visible, &picture)?;
+        timings
+            .time(limit_step(view), || passes::limit::run(device, passes, &scene, &visible, &picture.surface, stage))?;
+        timings.time("shade", || passes::shade::run(device, passes, &scene, &visible, &picture, stage))?;
         timings.time("resolve", || passes::resolve::run(device, passes, &scene, &picture, &tile, colour))?;
         if let (Some(summary), Some(texture)) = (&mut summary, &visible.certificate) {
             let bits: Vec<u32> = timings.time("certificates", || device.read_texture(texture))?;
@@ -183,6 +185,38 @@ pub(super) fn inspect(
     }
     image.timings = timings;
     Ok(image)
+}
+
+/// The stage that the view asks for; where it leaves the choice, the one that took less time over the first tile.
+pub(super) fn choose_stage(
+    device: &Device,
+    passes: &Passes,
+    scene: &Scene<'_>,
+    visible: &Visible,
+    picture: &PictureTargets,
+) -> Result<Stage, GpuError> {
+    if scene.view.stage != Stage::Auto {
+        return Ok(scene.view.stage);
+    }
+    if device.info.device_type == wgpu::DeviceType::Cpu {
+        return Ok(Stage::Fragment);
+    }
+    if let Some(&stage) = passes.fastest.get() {
+        return Ok(stage);
+    }
+    let time = |stage: Stage| -> Result<Duration, GpuError> {
+        let once = || -> Result<Duration, GpuError> {
+            let start = Instant::now();
+            passes::limit::run(device, passes, scene, visible, &picture.surface, stage)?;
+            passes::shade::run(device, passes, scene, visible, picture, stage)?;
+            Ok(start.elapsed())
+        };
+        // The first time compiles.
+        once()?;
+        Ok(once()?.min(once()?))
+    };
+    let stage = if time(Stage::Compute)? < time(Stage::Fragment)? { Stage::Compute } else { Stage::Fragment };
+    Ok(*passes.fastest.get_or_init(|| stage))
 }
 
 /// What each sample of a tile sees.

@@ -14,7 +14,7 @@
 //! The rectangle is drawn in tiles; their points land on one picture with one depth buffer, in the same order every time.
 
 use super::device::Device;
-use super::frame::{Drawn, SurfaceImage, Timings, read_tile};
+use super::frame::{Drawn, SurfaceImage, Timings, choose_stage, read_tile};
 use super::passes::points::{Cloud, Landing};
 use super::passes::{self, Colour, Passes, PictureTargets, Scene, SurfaceTargets, Visible};
 use super::view::{Tile, View};
@@ -44,9 +44,10 @@ pub(super) fn draw<T: bytemuck::Pod>(
         let texels = PictureTargets::new(device, &tile, colour);
         timings.time("visibility", || passes::visibility::run(device, passes, &scene, &visible, &tile))?;
         let position = timings.time("position", || passes::points::run_position(device, passes, &scene, &visible))?;
+        let stage = choose_stage(device, passes, &scene, &visible, &texels)?;
         timings.time("colour", || {
-            passes::limit::run(device, passes, &scene, &visible, &texels.surface)?;
-            passes::shade::run(device, passes, &scene, &visible, &texels)
+            passes::limit::run(device, passes, &scene, &visible, &texels.surface, stage)?;
+            passes::shade::run(device, passes, &scene, &visible, &texels, stage)
         })?;
         let cloud = Cloud { visible: &visible, position: &position };
         timings.time("points", || passes::points::run(device, passes, &scene, &cloud, &texels, &landing, &whole))?;

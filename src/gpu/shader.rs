@@ -22,6 +22,8 @@ pub const PATTERN_PICTURE: u32 = 3;
 pub const WORKGROUP: u32 = 64;
 /// Highest level n with 2^-n a normal f32: the number of scales of a class.
 pub const SCALE_LEVELS: u32 = 126;
+/// Samples a side of a workgroup of the compute stages.
+pub const TILE_SIDE: u32 = 8;
 /// Texels in a row of a table texture; the tables of the largest meshes then have some 10,000 rows.
 pub const TABLE_WIDTH: u32 = 4096;
 /// Rows of a block of a table: what every adapter takes (WebGPU's default limit), a power of two so that shaders find a
@@ -153,6 +155,7 @@ fn constants(variant: &Variant) -> String {
         ("PATTERN_CIRCLES", PATTERN_CIRCLES),
         ("PATTERN_PICTURE", PATTERN_PICTURE),
         ("WORKGROUP", WORKGROUP),
+        ("TILE_SIDE", TILE_SIDE),
         ("TABLE_WIDTH", TABLE_WIDTH),
         ("BLOCK_ROWS", variant.block_rows),
         ("TABLE_LEVELS", TABLE_LEVELS as u32),

@@ -36,6 +36,19 @@ pub enum Pipeline {
     Points,
 }
 
+/// Which kind of pass evaluates and shades over the visibility buffer. The picture does not depend on it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Stage {
+    /// Fragment passes on software adapters, where they are the faster; on others, whichever takes less time over the first
+    /// tile that is drawn.
+    #[default]
+    Auto,
+    /// Fragment passes: the reference.
+    Fragment,
+    /// Compute passes: some GPUs rasterise on a few of their cores only. Polygons keep their fragment pass.
+    Compute,
+}
+
 /// Colours, linear RGB from 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Palette {
@@ -72,6 +85,8 @@ pub struct View {
     pub pattern: Pattern,
     /// How position and normal come to a pixel.
     pub pipeline: Pipeline,
+    /// Kind of the passes that evaluate and shade.
+    pub stage: Stage,
     /// Level of the proxy tessellation, in the exact pipeline the least one of its charts, 0 to [`MAX_PROXY_LEVEL`]: 2^level parts a quad
     /// face. `None`: as fine as the picture
     /// asks for ([`View::proxy_level_for`]).
@@ -93,6 +108,7 @@ impl View {
             field: Field::Reflection(light),
             pattern: Pattern::Stripes { width: 0.42 },
             pipeline: Pipeline::default(),
+            stage: Stage::default(),
             proxy_level: None,
             samples: 2,
             enlarge: 1.0,

@@ -1,12 +1,14 @@
 //! What goes out: files that are written whole or not at all.
 
 mod exr;
+mod heat;
 mod png;
 mod whole;
 
 pub use exr::{Layers, NO_FACE, read_exr_made_by, world_to_camera, world_to_ndc, write_exr};
+pub use heat::{Heat, heat};
 pub use png::{read_png_made_by, write_png};
-pub use whole::{OutputError, WriteSeek, check_writable, write_whole};
+pub use whole::{OutputError, WriteSeek, check_writable, discard_unfinished, write_whole};
 
 /// Keyword of the PNG text and name of the EXR attribute that say how a picture was made.
 pub const MADE_BY: &str = "catoptric";

@@ -2,6 +2,7 @@
 
 use std::io::{BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Why a file was not written. Whatever stood at the path before still stands there.
 #[derive(Debug, thiserror::Error)]
@@ -17,6 +18,44 @@ pub struct OutputError {
 pub trait WriteSeek: Write + Seek {}
 
 impl<W: Write + Seek> WriteSeek for W {}
+
+/// Files that are being written.
+static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Keeps a file among the unfinished ones while it lives.
+struct Unfinished(PathBuf);
+
+impl Drop for Unfinished {
+    fn drop(&mut self) {
+        unfinished().retain(|path| *path != self.0);
+    }
+}
+
+/// Begins the file that becomes `path`.
+fn begin(path: &Path) -> std::io::Result<(tempfile::NamedTempFile, Unfinished)> {
+    // Locked until it is noted, so that no file is there that is not.
+    let mut unfinished = unfinished();
+    let file = beside(path)?;
+    unfinished.push(file.path().to_owned());
+    let noted = Unfinished(file.path().to_owned());
+    Ok((file, noted))
+}
+
+/// Removes the files that this process has begun and not finished: for when it is stopped, which runs no destructors. No
+/// file is finished afterwards.
+pub fn discard_unfinished() {
+    let unfinished = unfinished();
+    for path in unfinished.iter() {
+        // It may be finished already, under its own name.
+        let _ = std::fs::remove_file(path);
+    }
+    // Whoever begins another file waits for the end of the process.
+    std::mem::forget(unfinished);
+}
 
 fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
@@ -46,7 +85,7 @@ fn beside(path: &Path) -> std::io::Result<tempfile::NamedTempFile> {
 /// # Errors
 /// As above. Nothing is left behind.
 pub fn check_writable(path: &Path) -> Result<(), OutputError> {
-    beside(path).map(drop).map_err(|source| OutputError { path: path.to_owned(), source })
+    begin(path).map(drop).map_err(|source| OutputError { path: path.to_owned(), source })
 }
 
 /// Writes a file through `content`, whole or not at all.
@@ -58,7 +97,8 @@ pub fn write_whole(
     content: impl FnOnce(&mut dyn WriteSeek) -> std::io::Result<()>,
 ) -> Result<(), OutputError> {
     let write = || -> std::io::Result<()> {
-        let mut writer = BufWriter::new(beside(path)?);
+        let (file, _unfinished) = begin(path)?;
+        let mut writer = BufWriter::new(file);
         content(&mut writer)?;
         let file = writer.into_inner().map_err(std::io::IntoInnerError::into_error)?;
         file.as_file().sync_all()?;

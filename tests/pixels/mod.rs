@@ -8,7 +8,7 @@ pub use report::{Limits, Report};
 use crate::caster::{Caster, Hit, Ray};
 use crate::common::angle_deg;
 use catoptric::field::Camera;
-use catoptric::gpu::{NO_PATCH, SurfaceImage};
+use catoptric::gpu::{Certificate, NO_PATCH, State, SurfaceImage};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -44,8 +44,11 @@ impl From<&SurfaceImage> for Pixels {
             let patch = image.patch[i];
             (patch != NO_PATCH).then(|| Point { patch: patch as usize, position: image.position[i], normal })
         };
-        // A pipeline that certifies its pixels says so here.
-        Pixels { size: image.size, points: (0..image.patch.len()).map(point).collect(), residual: None }
+        // A pixel in doubt counts as one without a residual.
+        let own = |c: &Certificate| if c.doubtful { f32::NAN } else { c.residual };
+        let certified = |c: &Certificate| matches!(c.state, State::Chart | State::Solved);
+        let residual = image.certificate.iter().any(certified).then(|| image.certificate.iter().map(own).collect());
+        Pixels { size: image.size, points: (0..image.patch.len()).map(point).collect(), residual }
     }
 }
 
@@ -87,14 +90,14 @@ impl<'a> Judge<'a> {
         let axes = camera.axes();
         let bounds = caster.surface().bounds().expect("it has patches");
         let pixel = 2.0 / (axes.scale[1] * f64::from(camera.size[1]));
-        Judge { caster, camera, near: camera.near(bounds), forward: axes.forward, pixel }
+        Judge { caster, camera, near: camera.depth_range(bounds)[0], forward: axes.forward, pixel }
     }
 
     /// First hit of the ray through pixel coordinates, beyond the near plane.
     pub fn see(&self, [x, y]: [f64; 2]) -> Option<Hit> {
-        let direction = self.camera.pixel_ray(x, y);
+        let catoptric::field::Ray { origin, direction } = self.camera.pixel_ray(x, y);
         let start = self.near / direction.dot(self.forward);
-        self.caster.first_hit(&Ray { origin: self.camera.eye, direction, start })
+        self.caster.first_hit(&Ray { origin, direction, start })
     }
 
     /// What the caster itself would have drawn, looking `shift` pixels aside.
@@ -171,12 +174,11 @@ impl<'a> Judge<'a> {
     /// way that it goes, for curvature, and a tenth of a pixel.
     fn continues(&self, hit: &Hit, at: [f64; 2], other: Option<&Hit>) -> bool {
         let Some(other) = other else { return false };
-        let direction = (other.position - self.camera.eye).normalize();
-        let centre = self.camera.pixel_ray(at[0], at[1]);
-        let here = (hit.position - self.camera.eye).dot(centre);
-        let plane = (hit.position - self.camera.eye).dot(hit.normal) / direction.dot(hit.normal);
-        let off = ((other.position - self.camera.eye).length() - plane).abs();
-        off <= 0.5 * (plane - here).abs() + 0.1 * self.footprint(hit.position)
+        let sight = self.camera.sight(other.position).normalize();
+        let here = (hit.position - self.camera.eye).dot(self.camera.pixel_ray(at[0], at[1]).direction);
+        let beyond = (other.position - hit.position).dot(hit.normal) / sight.dot(hit.normal);
+        let plane = (other.position - self.camera.eye).dot(sight) - beyond;
+        beyond.abs() <= 0.5 * (plane - here).abs() + 0.1 * self.footprint(hit.position)
     }
 
     /// Whether normals jump within the band, by this angle or more. On a smooth surface the normals of a ring differ in proportion to its size,

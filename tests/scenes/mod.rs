@@ -1,7 +1,7 @@
 //! Surfaces and cameras that are hard on a pixel-exact pipeline.
 
 use crate::gpu_support::mesh;
-use catoptric::field::{Camera, Scout};
+use catoptric::field::{Camera, Projection, Scout};
 use catoptric::gpu::{Pipeline, View};
 use catoptric::mesh::{self, SubdivMesh};
 use catoptric::patch::PatchKind;
@@ -29,7 +29,7 @@ impl Scene {
 
     /// One sample a pixel, in its centre.
     pub fn view(&self, pipeline: Pipeline, proxy_level: Option<u32>) -> View {
-        let light = Scout::new(&self.surface).expect("it has patches").light(self.camera.eye, self.camera.up);
+        let light = Scout::new(&self.surface).expect("it has patches").light(&self.camera);
         View { pipeline, proxy_level, samples: 1, ..View::new(self.camera, light) }
     }
 }
@@ -83,7 +83,7 @@ fn close(jet: &Jet, distance: f64, elevation: f64) -> Camera {
     let (sin, cos) = elevation.to_radians().sin_cos();
     let along = jet.du.normalize();
     let eye = jet.position + distance * (sin * jet.normal + cos * along);
-    Camera { eye, target: jet.position, up: jet.normal, fov: 30.0, size: SIZE }
+    Camera { eye, target: jet.position, up: jet.normal, projection: Projection::Perspective { fov: 30.0 }, size: SIZE }
 }
 
 /// From within a closed object, wide.
@@ -91,7 +91,13 @@ pub fn inside(name: &str) -> Scene {
     Scene::new("from inside", &mesh(name), |surface| {
         let [low, high] = surface.bounds().expect("it has patches");
         let eye = (low + high) * 0.5 + 0.1 * (high - low) * dvec3(1.0, -0.5, 0.3);
-        Camera { eye, target: eye + dvec3(0.3, 0.8, 0.6), up: DVec3::Z, fov: 100.0, size: SIZE }
+        Camera {
+            eye,
+            target: eye + dvec3(0.3, 0.8, 0.6),
+            up: DVec3::Z,
+            projection: Projection::Perspective { fov: 100.0 },
+            size: SIZE,
+        }
     })
 }
 
@@ -101,7 +107,7 @@ pub fn thousandfold() -> Vec<Scene> {
         Scene::new("long lens", mesh, |surface| {
             let fitted =
                 Scout::new(surface).expect("it has patches").camera_from(SIZE, DVec3::Z, dvec3(0.6, -0.7, 0.5), 26.0);
-            Camera { target: tip(surface, kind).position, fov: 0.026, ..fitted }
+            Camera { target: tip(surface, kind).position, projection: Projection::Perspective { fov: 0.026 }, ..fitted }
         })
     };
     let eye = |mesh: &SubdivMesh, kind: PatchKind, elevation: f64| {
@@ -136,7 +142,7 @@ pub fn million_to_one() -> Scene {
         eye: DVec3::ZERO,
         target: DVec3::NEG_Z,
         up: DVec3::Y,
-        fov: 60.0,
+        projection: Projection::Perspective { fov: 60.0 },
         size: SIZE,
     })
 }

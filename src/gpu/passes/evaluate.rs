@@ -1,6 +1,6 @@
 //! `shaders/evaluate.wgsl`: the limit at samples.
 
-use super::{Passes, bind};
+use super::{Passes, bind, compute};
 use crate::gpu::device::Device;
 use crate::gpu::records::{JetRecord, SampleRecord};
 use crate::gpu::shader::{EVALUATE, WORKGROUP};
@@ -14,16 +14,7 @@ use wgpu::BufferUsages;
 const BATCH: usize = 1 << 20;
 
 fn pipeline<'a>(passes: &'a Passes, device: &Device) -> &'a wgpu::ComputePipeline {
-    passes.evaluate.get_or_init(|| {
-        device.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some("evaluate"),
-            layout: None,
-            module: &passes.shader(device, &EVALUATE),
-            entry_point: Some("evaluate"),
-            compilation_options: Default::default(),
-            cache: None,
-        })
-    })
+    passes.evaluate.get_or_init(|| compute(passes, device, &EVALUATE, "evaluate"))
 }
 
 pub fn run(device: &Device, passes: &Passes, tables: &Tables, samples: &[Sample]) -> Result<Vec<Jet>, GpuError> {

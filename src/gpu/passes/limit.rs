@@ -1,10 +1,10 @@
 //! `shaders/limit.wgsl` and `shaders/polygon.wgsl`: position, normal and field of every pixel.
 
 use super::{PACKED_FORMAT, Passes, SURFACE_FORMAT, Scene, SurfaceTargets, Visible};
-use super::{bind, draw_fullscreen, fullscreen, whole};
+use super::{bind, compute, dispatch, draw_fullscreen, fullscreen, whole};
 use crate::gpu::device::Device;
 use crate::gpu::shader::{LIMIT, POLYGON};
-use crate::gpu::{GpuError, Pipeline};
+use crate::gpu::{GpuError, Pipeline, Stage};
 use wgpu::BindingResource::TextureView;
 
 pub fn pipeline<'a>(passes: &'a Passes, device: &Device, pipeline: Pipeline) -> &'a wgpu::RenderPipeline {
@@ -36,8 +36,20 @@ pub fn run(
     scene: &Scene<'_>,
     visible: &Visible,
     surface: &wgpu::Texture,
+    stage: Stage,
 ) -> Result<(), GpuError> {
+    if stage == Stage::Compute && visible.proxy.is_none() {
+        let pipeline = compute_pipeline(passes, device);
+        let mut groups = groups(device, &|group| pipeline.get_bind_group_layout(group), scene, visible).to_vec();
+        let out = whole(surface);
+        groups.push(bind(device, pipeline.get_bind_group_layout(2), &[(0, TextureView(&out))]));
+        return dispatch(device, pipeline, &groups, surface);
+    }
     draw(device, pipeline(passes, device, scene.view.pipeline), scene, visible, &[surface])
+}
+
+pub fn compute_pipeline<'a>(passes: &'a Passes, device: &Device) -> &'a wgpu::ComputePipeline {
+    passes.limit_compute.get_or_init(|| compute(passes, device, &LIMIT, "limit_compute"))
 }
 
 /// Writes everything in f32.
@@ -59,6 +71,16 @@ fn draw(
     visible: &Visible,
     targets: &[&wgpu::Texture],
 ) -> Result<(), GpuError> {
+    let groups = groups(device, &|group| pipeline.get_bind_group_layout(group), scene, visible);
+    draw_fullscreen(device, pipeline, &groups, targets, Some(&visible.depth))
+}
+
+fn groups(
+    device: &Device,
+    layout: &dyn Fn(u32) -> wgpu::BindGroupLayout,
+    scene: &Scene<'_>,
+    visible: &Visible,
+) -> [wgpu::BindGroup; 2] {
     let [records, points, scales, patch_views] = scene.table_views();
     let mut resources = vec![(3, TextureView(&patch_views)), (4, scene.light.as_entire_binding())];
     let patch = whole(&visible.patch);
@@ -71,9 +93,5 @@ fn draw(
     };
     let textures: Vec<_> =
         [&patch].into_iter().chain(&inputs).enumerate().map(|(k, view)| (k as u32, TextureView(view))).collect();
-    let groups = [
-        bind(device, pipeline.get_bind_group_layout(0), &resources),
-        bind(device, pipeline.get_bind_group_layout(1), &textures),
-    ];
-    draw_fullscreen(device, pipeline, &groups, targets, Some(&visible.depth))
+    [bind(device, layout(0), &resources), bind(device, layout(1), &textures)]
 }

@@ -11,9 +11,9 @@ pub mod visibility;
 
 use super::device::Device;
 use super::proxy::Proxy;
-use super::shader::{Module, Variant};
+use super::shader::{Module, TILE_SIDE, Variant};
 use super::view::Tile;
-use super::{GpuError, Pipeline, Tables, View};
+use super::{GpuError, Pipeline, Stage, Tables, View};
 use std::sync::OnceLock;
 use wgpu::{BufferUsages, TextureFormat, TextureUsages};
 
@@ -22,6 +22,8 @@ use wgpu::{BufferUsages, TextureFormat, TextureUsages};
 pub struct Passes {
     /// Whether they read tables with levels given by picked points.
     has_tail: bool,
+    /// What [`Stage::Auto`] found out.
+    pub fastest: OnceLock<Stage>,
     specks: OnceLock<wgpu::RenderPipeline>,
     charts: OnceLock<wgpu::RenderPipeline>,
     visibility: OnceLock<wgpu::RenderPipeline>,
@@ -39,6 +41,8 @@ pub struct Passes {
     resolve: OnceLock<wgpu::RenderPipeline>,
     resolve_linear: OnceLock<wgpu::RenderPipeline>,
     evaluate: OnceLock<wgpu::ComputePipeline>,
+    limit_compute: OnceLock<wgpu::ComputePipeline>,
+    shade_compute: OnceLock<wgpu::ComputePipeline>,
 }
 
 impl Passes {
@@ -161,6 +165,11 @@ impl Colour {
 }
 
 fn target(device: &Device, size: [u32; 2], format: TextureFormat) -> wgpu::Texture {
+    // What compute stages write.
+    let storage = match format {
+        PACKED_FORMAT | SAMPLE_FORMAT => TextureUsages::STORAGE_BINDING,
+        _ => TextureUsages::empty(),
+    };
     device.device.create_texture(&wgpu::TextureDescriptor {
         label: None,
         size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
@@ -168,7 +177,7 @@ fn target(device: &Device, size: [u32; 2], format: TextureFormat) -> wgpu::Textu
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
         format,
-        usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC,
+        usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC | storage,
         view_formats: &[],
     })
 }
@@ -244,6 +253,36 @@ fn fullscreen(
         multiview_mask: None,
         cache: None,
     })
+}
+
+/// A compute pipeline.
+fn compute(passes: &Passes, device: &Device, module: &Module, entry: &str) -> wgpu::ComputePipeline {
+    device.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some(entry),
+        layout: None,
+        module: &passes.shader(device, module),
+        entry_point: Some(entry),
+        compilation_options: Default::default(),
+        cache: None,
+    })
+}
+
+/// Runs a compute pass over all texels of `target`.
+fn dispatch(
+    device: &Device,
+    pipeline: &wgpu::ComputePipeline,
+    groups: &[wgpu::BindGroup],
+    target: &wgpu::Texture,
+) -> Result<(), GpuError> {
+    let mut encoder = device.encoder();
+    let mut pass = encoder.begin_compute_pass(&Default::default());
+    pass.set_pipeline(pipeline);
+    for (index, group) in groups.iter().enumerate() {
+        pass.set_bind_group(index as u32, group, &[]);
+    }
+    pass.dispatch_workgroups(target.width().div_ceil(TILE_SIDE), target.height().div_ceil(TILE_SIDE), 1);
+    drop(pass);
+    device.submit(encoder)
 }
 
 /// A bind group of numbered resources.

@@ -1,9 +1,11 @@
 //! `shaders/shade.wgsl`: field and pattern into colour.
 
-use super::{Passes, PictureTargets, SAMPLE_FORMAT, Scene, Visible, bind, draw_fullscreen, fullscreen, whole};
+use super::{
+    Passes, PictureTargets, SAMPLE_FORMAT, Scene, Visible, bind, compute, dispatch, draw_fullscreen, fullscreen, whole,
+};
 use crate::field::{Pattern, Picture};
 use crate::gpu::device::Device;
-use crate::gpu::{GpuError, View, shader::SHADE};
+use crate::gpu::{GpuError, Stage, View, shader::SHADE};
 use wgpu::BindingResource::{Sampler, TextureView};
 
 /// The picture on the light plane with all its mip levels, or one white texel.
@@ -80,27 +82,38 @@ pub fn pipeline<'a>(passes: &'a Passes, device: &Device) -> &'a wgpu::RenderPipe
     passes.shade.get_or_init(|| fullscreen(passes, device, &SHADE, "shade", &[SAMPLE_FORMAT], true))
 }
 
+pub fn compute_pipeline<'a>(passes: &'a Passes, device: &Device) -> &'a wgpu::ComputePipeline {
+    passes.shade_compute.get_or_init(|| compute(passes, device, &SHADE, "shade_compute"))
+}
+
 pub fn run(
     device: &Device,
     passes: &Passes,
     scene: &Scene<'_>,
     visible: &Visible,
     picture: &PictureTargets,
+    stage: Stage,
 ) -> Result<(), GpuError> {
-    let pipeline = pipeline(passes, device);
     let record = scene.view.shade_record(scene.tables);
     let record = device.buffer("the colours", &[record], wgpu::BufferUsages::UNIFORM)?;
     let surface = whole(&picture.surface);
-    let group = bind(
-        device,
-        pipeline.get_bind_group_layout(0),
-        &[
-            (0, TextureView(&surface)),
-            (1, TextureView(&scene.picture.view)),
-            (2, Sampler(&scene.picture.sampler)),
-            (3, record.as_entire_binding()),
-            (4, scene.light.as_entire_binding()),
-        ],
-    );
+    let resources = [
+        (0, TextureView(&surface)),
+        (1, TextureView(&scene.picture.view)),
+        (2, Sampler(&scene.picture.sampler)),
+        (3, record.as_entire_binding()),
+        (4, scene.light.as_entire_binding()),
+    ];
+    if stage == Stage::Compute {
+        let pipeline = compute_pipeline(passes, device);
+        let out = whole(&picture.samples);
+        let groups = [
+            bind(device, pipeline.get_bind_group_layout(0), &resources),
+            bind(device, pipeline.get_bind_group_layout(1), &[(0, TextureView(&out))]),
+        ];
+        return dispatch(device, pipeline, &groups, &picture.samples);
+    }
+    let pipeline = pipeline(passes, device);
+    let group = bind(device, pipeline.get_bind_group_layout(0), &resources);
     draw_fullscreen(device, pipeline, &[group], &[&picture.samples], Some(&visible.depth))
 }

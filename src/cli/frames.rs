@@ -1,0 +1,187 @@
+//! Series of pictures: turntables and light sweeps, numbered files that a later run can go on with.
+
+use super::Failure;
+use super::render::Format;
+use crate::gpu::View;
+use clap::Args;
+use glam::DQuat;
+use std::path::{Path, PathBuf};
+
+/// Most frames of a series: more than an hour at 25 a second.
+const MOST_FRAMES: i64 = 100_000;
+/// Least digits of a frame's number in a file name.
+const DIGITS: usize = 4;
+/// Most digits of a frame's number: file names end at some 255 bytes.
+const MOST_DIGITS: usize = 100;
+
+#[derive(Debug, Args)]
+pub(super) struct FramesArgs {
+    /// Draw a series of N pictures into numbered files: view_0001.png and so on, or where FILE has #### or %04d
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MOST_FRAMES))]
+    frames: Option<u32>,
+    /// Turn the eye by DEG in total about the up axis through the target, counter-clockwise seen from above; whole turns
+    /// loop. A camera that is fitted is fitted to the first picture
+    #[arg(long, value_name = "DEG", value_parser = way, allow_negative_numbers = true)]
+    orbit: Option<f64>,
+    /// Move the light plane across its lines by DIST periods of its pattern in total; whole periods of an infinite plane
+    /// loop
+    #[arg(long, value_name = "DIST", value_parser = way, allow_negative_numbers = true, num_args = 0..=1, default_missing_value = "1")]
+    sweep_light: Option<f64>,
+    /// Leave frames that are there already with the same settings, and draw the others
+    #[arg(long)]
+    resume: bool,
+}
+
+fn way(text: &str) -> Result<f64, String> {
+    text.parse().ok().filter(|x: &f64| x.is_finite() && *x != 0.0).ok_or("give a number other than 0".to_owned())
+}
+
+impl FramesArgs {
+    /// Refuses flags that contradict each other or miss one another.
+    pub(super) fn check(&self) -> Result<(), Failure> {
+        let bad = |what: &str| Err(Failure::Bad(what.to_owned()));
+        match (self.frames, self.orbit, self.sweep_light) {
+            (_, Some(_), Some(_)) => bad("--orbit and --sweep-light are two series; give one of them"),
+            (Some(_), None, None) => bad("--frames needs something that changes; add --orbit DEG or --sweep-light"),
+            (None, Some(_), None) => bad("--orbit needs the number of pictures; add --frames N"),
+            (None, None, Some(_)) => bad("--sweep-light needs the number of pictures; add --frames N"),
+            (None, ..) if self.resume => bad("--resume goes on with a series; add --frames N, or leave it out"),
+            _ => Ok(()),
+        }
+    }
+
+    /// Files of the series in order; `output` itself without one.
+    pub(super) fn paths(&self, output: &Path) -> Result<Vec<PathBuf>, Failure> {
+        let Some(count) = self.frames else { return Ok(vec![output.to_owned()]) };
+        let name = output.file_name().and_then(|name| name.to_str()).and_then(|name| Numbered::new(name, count));
+        let name = name.ok_or_else(|| {
+            let what = "cannot number this name; have one #### or %04d in it, or neither";
+            Failure::Bad(format!("{}: {what}", output.display()))
+        })?;
+        Ok((1..=count).map(|frame| output.with_file_name(name.of(frame))).collect())
+    }
+
+    /// What frame `index` of the series shows, counted from 0; the first one shows `view` itself.
+    pub(super) fn view(&self, view: &View, index: u32) -> View {
+        let mut view = view.clone();
+        let count = self.frames.unwrap_or(1);
+        if let Some(degrees) = self.orbit {
+            let angle = degrees.to_radians() * progress(index, count, degrees / 360.0);
+            if angle != 0.0 {
+                let camera = &mut view.camera;
+                let turn = DQuat::from_axis_angle(camera.up.normalize(), angle);
+                camera.eye = camera.target + turn * (camera.eye - camera.target);
+            }
+        }
+        if let Some(periods) = self.sweep_light {
+            let period = view.pattern.period(view.light());
+            let crate::field::Field::Reflection(light) = &mut view.field;
+            light.center += light.axes[0] * (period * periods * progress(index, count, periods));
+        }
+        view
+    }
+
+    /// Whether a frame is to be drawn: not where `--resume` finds it with the same settings.
+    pub(super) fn is_missing(&self, path: &Path, made_by: &str) -> Result<bool, Failure> {
+        if !(self.resume && path.exists()) {
+            return Ok(true);
+        }
+        match Format::of(path)?.made_by(path) {
+            Ok(Some(found)) if found == made_by => Ok(false),
+            Ok(Some(_)) => Err(other(path, "was made with other settings")),
+            Ok(None) => Err(other(path, "does not say how it was made")),
+            Err(error) => Err(other(path, &format!("cannot be read ({error})"))),
+        }
+    }
+}
+
+/// A file that stands where a frame would.
+fn other(path: &Path, what: &str) -> Failure {
+    let remedy = "remove it, choose another -o, or leave --resume out to overwrite it";
+    Failure::Bad(format!("{}: this frame is there, but {what}; {remedy}", path.display()))
+}
+
+/// Part of the way at frame `index` of `count`: if the way is a whole number of `rounds`, the frame after the last one is
+/// the first again; else the last one is at its end.
+fn progress(index: u32, count: u32, rounds: f64) -> f64 {
+    let steps = if rounds.fract() == 0.0 { count } else { (count - 1).max(1) };
+    f64::from(index) / f64::from(steps)
+}
+
+/// A file name with a place for the frame's number.
+struct Numbered {
+    before: String,
+    digits: usize,
+    after: String,
+}
+
+impl Numbered {
+    /// `None` where the name has several places, one for absurdly many digits, or none and no extension.
+    fn new(name: &str, count: u32) -> Option<Numbered> {
+        let mut places = places(name);
+        let (start, end, digits) = match places.next() {
+            Some(place) => place,
+            None => {
+                let dot = name.rfind('.')?;
+                // So many digits that names sort like numbers.
+                let digits = DIGITS.max(count.to_string().len());
+                return Some(Numbered { before: format!("{}_", &name[..dot]), digits, after: name[dot..].to_owned() });
+            }
+        };
+        let fine = places.next().is_none() && digits <= MOST_DIGITS;
+        fine.then(|| Numbered { before: name[..start].to_owned(), digits, after: name[end..].to_owned() })
+    }
+
+    fn of(&self, frame: u32) -> String {
+        format!("{}{frame:0digits$}{}", self.before, self.after, digits = self.digits)
+    }
+}
+
+/// Start, end and digits of every `####` and `%04d` of a name.
+fn places(name: &str) -> impl Iterator<Item = (usize, usize, usize)> {
+    let bytes = name.as_bytes();
+    let run = move |start: usize, what: fn(&u8) -> bool| bytes[start..].iter().take_while(|&b| what(b)).count();
+    (0..bytes.len()).filter_map(move |start| match bytes[start] {
+        b'#' if start == 0 || bytes[start - 1] != b'#' => {
+            let digits = run(start, |&b| b == b'#');
+            Some((start, start + digits, digits))
+        }
+        b'%' => {
+            let digits = run(start + 1, u8::is_ascii_digit);
+            let end = start + 1 + digits;
+            let wide = name[start + 1..end].parse().unwrap_or(if digits == 0 { 1 } else { usize::MAX });
+            (bytes.get(end) == Some(&b'd')).then_some((start, end + 1, wide))
+        }
+        _ => None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_come_where_the_name_says() {
+        let name = |name: &str, count: u32, frame: u32| Numbered::new(name, count).map(|name| name.of(frame));
+        let some = |name: &str| Some(name.to_owned());
+        assert_eq!(name("view.png", 36, 1), some("view_0001.png"));
+        assert_eq!(name("a.b.exr", 20_000, 12), some("a.b_00012.exr"));
+        assert_eq!(name("car-##.png", 200, 7), some("car-07.png"));
+        assert_eq!(name("car-##.png", 200, 123), some("car-123.png"));
+        assert_eq!(name("%06d.png", 5, 5), some("000005.png"));
+        assert_eq!(name("a%d.png", 5, 5), some("a5.png"));
+        assert_eq!(name("100%.png", 5, 5), some("100%_0005.png"));
+        assert_eq!(name("\u{fc}#.png", 5, 5), some("\u{fc}5.png"));
+        for bad in ["#-#.png", "%d_%02d.png", "#%d.png", "%0999d.png", "%0999999999999999999999d.png"] {
+            assert_eq!(name(bad, 5, 1), None, "{bad}");
+        }
+    }
+
+    #[test]
+    fn whole_rounds_loop_and_others_arrive() {
+        assert_eq!([0, 1, 2, 3].map(|k| progress(k, 4, 1.0)), [0.0, 0.25, 0.5, 0.75]);
+        assert_eq!([0, 1, 2, 3].map(|k| progress(k, 4, -2.0)), [0.0, 0.25, 0.5, 0.75]);
+        assert_eq!([0, 1, 2].map(|k| progress(k, 3, 0.25)), [0.0, 0.5, 1.0]);
+        assert_eq!(progress(0, 1, 0.25), 0.0);
+    }
+}

@@ -1,0 +1,246 @@
+//! Series of pictures as a user meets them: numbers, loops, going on after an interruption.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+struct Folder(tempfile::TempDir);
+
+impl Folder {
+    fn new() -> Self {
+        Self(tempfile::tempdir().expect("a temporary folder"))
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn command(&self, args: &str) -> Command {
+        let mesh = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes/corner.obj");
+        let mut command = Command::new(env!("CARGO_BIN_EXE_catoptric"));
+        command.arg("render").arg(mesh).args(args.split_whitespace()).current_dir(self.0.path());
+        command
+    }
+
+    fn output(&self, args: &str) -> Output {
+        self.command(args).output().expect("the program starts")
+    }
+
+    fn done(&self, args: &str) {
+        let output = self.output(args);
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{args}: {message}");
+        // Standard error is no terminal here.
+        assert_eq!(message, "", "{args}");
+    }
+
+    /// Refused with exit code 2, one line, and all files as before.
+    fn refused(&self, args: &str) -> String {
+        let before = self.names();
+        let output = self.output(args);
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{args}: {message}");
+        assert_eq!(message.lines().count(), 1, "{args}: {message}");
+        assert_eq!(self.names(), before, "{args} left a file");
+        message
+    }
+
+    fn names(&self) -> Vec<String> {
+        let entries = std::fs::read_dir(self.0.path()).expect("a readable folder");
+        let mut names: Vec<String> =
+            entries.map(|entry| entry.expect("an entry").file_name().into_string().expect("UTF-8")).collect();
+        names.sort();
+        names
+    }
+
+    fn bytes(&self, name: &str) -> Vec<u8> {
+        std::fs::read(self.path(name)).expect(name)
+    }
+
+    fn pixels(&self, name: &str) -> Vec<u8> {
+        image::load_from_memory(&self.bytes(name)).expect("a PNG").to_rgba8().into_raw()
+    }
+
+    /// When a file was last written, and which one it is.
+    fn stamp(&self, name: &str) -> (std::time::SystemTime, u64) {
+        use std::os::unix::fs::MetadataExt;
+        let data = std::fs::metadata(self.path(name)).expect(name);
+        (data.modified().expect("a time"), data.ino())
+    }
+}
+
+/// Bytes that differ by more than a step of rounding.
+fn different(a: &[u8], b: &[u8]) -> usize {
+    assert_eq!(a.len(), b.len());
+    a.iter().zip(b).filter(|(a, b)| a.abs_diff(**b) > 2).count()
+}
+
+#[test]
+fn frames_are_numbered_and_the_first_is_the_plain_picture() {
+    let folder = Folder::new();
+    folder.done("--size 64x48 -o plain.png");
+    folder.done("--size 64x48 --frames 3 --orbit 360");
+    assert_eq!(folder.names(), ["plain.png", "view_0001.png", "view_0002.png", "view_0003.png"]);
+    assert!(folder.bytes("plain.png") == folder.bytes("view_0001.png"), "the first frame is another picture");
+    folder.done("--size 64x48 --frames 2 --sweep-light -o light-##.png");
+    folder.done("--size 64x48 --frames 1 --sweep-light 0.5 -o %02d.png");
+    assert!(["light-01.png", "light-02.png", "01.png"].iter().all(|name| folder.path(name).exists()));
+    assert!(folder.bytes("plain.png") == folder.bytes("light-01.png"));
+    assert!(folder.bytes("plain.png") == folder.bytes("01.png"));
+}
+
+/// A turn of 360 degrees in 4 frames is 4 quarters: the same pictures as a turn of 270 degrees in 4, which ends there.
+/// Back again is the same in reverse; and the second frame of a full turn in 2 is the third in 4.
+#[test]
+fn turns_loop_and_partial_turns_arrive() {
+    let folder = Folder::new();
+    folder.done("--size 64x48 --frames 4 --orbit 360 -o full#.png");
+    folder.done("--size 64x48 --frames 4 --orbit 270 -o part#.png");
+    folder.done("--size 64x48 --frames 4 --orbit -360 -o back#.png");
+    folder.done("--size 64x48 --frames 2 --orbit 360 -o half#.png");
+    let pixels = |name: &str| folder.pixels(name);
+    for frame in 1..=4 {
+        let full = pixels(&format!("full{frame}.png"));
+        assert!(different(&full, &pixels(&format!("part{frame}.png"))) < full.len() / 200, "frame {frame}");
+        let back = pixels(&format!("back{}.png", (5 - frame) % 4 + 1));
+        assert!(different(&full, &back) < full.len() / 200, "frame {frame} backwards");
+        let other = pixels(&format!("full{}.png", frame % 4 + 1));
+        assert!(different(&full, &other) > full.len() / 20, "frame {frame} is its neighbour");
+    }
+    assert!(different(&pixels("full3.png"), &pixels("half2.png")) < 64 * 48 * 4 / 200);
+}
+
+/// The light comes back after one period: half way there is half way back.
+#[test]
+fn sweeps_loop() {
+    let folder = Folder::new();
+    folder.done("--size 64x48 --frames 4 --sweep-light -o on#.png");
+    folder.done("--size 64x48 --frames 4 --sweep-light -1 -o back#.png");
+    folder.done("--size 64x48 --frames 3 --sweep-light 2.5 -o far#.png");
+    let pixels = |name: &str| folder.pixels(name);
+    let limit = 64 * 48 * 4 / 200;
+    assert!(different(&pixels("on2.png"), &pixels("back4.png")) < limit);
+    assert!(different(&pixels("on3.png"), &pixels("back3.png")) < limit);
+    assert!(different(&pixels("on1.png"), &pixels("on3.png")) > 4 * limit);
+    // 2.5 periods end half a period on.
+    assert!(different(&pixels("on3.png"), &pixels("far3.png")) < limit);
+}
+
+#[test]
+fn resuming_draws_what_is_missing_and_nothing_else() {
+    for extension in ["png", "exr"] {
+        let folder = Folder::new();
+        let flags = format!("--size 48x32 --frames 3 --orbit 90 -o v.{extension}");
+        let name = |frame: u32| format!("v_000{frame}.{extension}");
+        folder.done(&flags);
+        let whole = [1, 2, 3].map(|frame| folder.bytes(&name(frame)));
+        std::fs::remove_file(folder.path(&name(2))).expect("it is there");
+        let stamps = [1, 3].map(|frame| folder.stamp(&name(frame)));
+        folder.done(&format!("{flags} --resume"));
+        assert_eq!([1, 3].map(|frame| folder.stamp(&name(frame))), stamps);
+        assert!([1, 2, 3].map(|frame| folder.bytes(&name(frame))) == whole, "a frame has changed");
+        // Nothing to do.
+        let stamp = folder.stamp(&name(2));
+        folder.done(&format!("{flags} --resume"));
+        assert_eq!(folder.stamp(&name(2)), stamp);
+
+        // Other settings are not mixed with these, unless asked for.
+        std::fs::remove_file(folder.path(&name(1))).expect("it is there");
+        let message = folder.refused(&format!("{flags} --resume --light-width 0.1"));
+        assert!(message.contains(&name(2)) && message.contains("other settings"), "{message}");
+        folder.done(&format!("{flags} --light-width 0.1"));
+        assert!(folder.bytes(&name(2)) != whole[1], "it is not overwritten");
+        std::fs::write(folder.path(&name(3)), "not a picture").expect("a writable folder");
+        let message = folder.refused(&format!("{flags} --light-width 0.1 --resume"));
+        assert!(message.contains(&name(3)) && message.contains("cannot be read"), "{message}");
+    }
+    let folder = Folder::new();
+    image::RgbaImage::new(4, 4).save(folder.path("v_0001.png")).expect("a writable folder");
+    let message = folder.refused("--size 48x32 --frames 2 --orbit 90 -o v.png --resume");
+    assert!(message.contains("v_0001.png") && message.contains("does not say"), "{message}");
+}
+
+/// The mesh is part of the settings, whatever its file is called.
+#[test]
+fn another_mesh_of_the_same_name_is_noticed() {
+    let folder = Folder::new();
+    let quad = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 Z\nf 1 2 3 4\n";
+    let run = |z: &str, more: &[&str]| {
+        std::fs::write(folder.path("m.obj"), quad.replace('Z', z)).expect("a writable folder");
+        let mut command = Command::new(env!("CARGO_BIN_EXE_catoptric"));
+        command.current_dir(folder.path("."));
+        command.args(["render", "m.obj", "--size", "32x32", "--frames", "2", "--sweep-light"]).args(more);
+        command.args(["--eye=3,3,3", "--light-spacing=1", "--light-center=0,0,9", "--target=0,0,0"]);
+        command.args(["--light-normal=0,0,1", "--light-lines=0,1,0"]).output().expect("the program starts")
+    };
+    assert!(run("0", &[]).status.success());
+    assert!(run("0", &["--resume"]).status.success());
+    assert_eq!(run("0.25", &["--resume"]).status.code(), Some(2));
+}
+
+/// What the files say makes them again.
+#[test]
+fn files_carry_the_command_that_makes_them() {
+    let folder = Folder::new();
+    folder.done("--size 64x48 --frames 3 --orbit 100 --projection orthographic --pattern circles --samples 1");
+    let decoder = png::Decoder::new(std::io::Cursor::new(folder.bytes("view_0002.png")));
+    let reader = decoder.read_info().expect("a PNG");
+    let text = reader.info().utf8_text.iter().find(|text| text.keyword == "catoptric").expect("a text");
+    let text = text.get_text().expect("it is plain");
+    let (command, digests) = text.split_once(" # ").expect("digests");
+    assert!(digests.starts_with("mesh ") && !digests.contains("pattern"), "{text}");
+    let flags = command.split_once("corner.obj ").expect("the mesh").1;
+    folder.done(&format!("{flags} -o again.png"));
+    let [a, b] = ["view_0002.png", "again.png"].map(|name| folder.pixels(name));
+    assert!(different(&a, &b) < a.len() / 200, "{flags} draws another picture");
+}
+
+#[test]
+fn bad_series_are_refused() {
+    let folder = Folder::new();
+    for (args, expected) in [
+        ("--frames 0 --orbit 360", "0"),
+        ("--frames 10", "--orbit"),
+        ("--orbit 360", "--frames N"),
+        ("--sweep-light", "--frames N"),
+        ("--resume", "--frames N"),
+        ("--frames 3 --orbit 360 --sweep-light", "two series"),
+        ("--frames 3 --orbit 0", "other than 0"),
+        ("--frames 3 --orbit nan", "other than 0"),
+        ("--frames 3 --sweep-light inf", "other than 0"),
+        ("--frames 3 --orbit 360 -o #_#.png", "#_#.png: cannot number"),
+        ("--frames 3 --orbit 360 -o no-such-folder/v.png", "no-such-folder"),
+        ("--frames 3 --orbit 360 -o v.gif", ".png or .exr"),
+    ] {
+        let message = folder.refused(args);
+        assert!(message.contains(expected), "{args}: {message}");
+    }
+}
+
+/// Interrupted in the middle of a series: every file that is there is whole, none is left half written, and the rest
+/// is drawn later.
+#[test]
+fn interrupted_series_leave_whole_files() {
+    let folder = Folder::new();
+    let flags = "--size 256x256 --frames 40 --orbit 360 -o v.exr";
+    let mut child = folder.command(flags).stderr(Stdio::null()).spawn().expect("the program starts");
+    for _ in 0..6000 {
+        if folder.path("v_0002.exr").exists() || child.try_wait().expect("a child").is_some() {
+            break;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    let stopped = Command::new("sh").args(["-c", &format!("kill -INT {}", child.id())]).status();
+    assert!(stopped.expect("a shell").success());
+    assert!(!child.wait().expect("a child").success());
+    let names = folder.names();
+    println!("{} frames before the interruption", names.len());
+    assert!((2..40).contains(&names.len()), "{names:?}");
+    assert!(names.iter().all(|name| name.starts_with("v_00") && name.ends_with(".exr")), "{names:?}");
+    for name in &names {
+        let file = exr::prelude::read_all_flat_layers_from_file(folder.path(name));
+        assert!(file.is_ok(), "{name} is not whole");
+    }
+    let stamp = folder.stamp("v_0001.exr");
+    folder.done(&format!("{flags} --resume"));
+    assert_eq!((folder.names().len(), folder.stamp("v_0001.exr")), (40, stamp));
+}
