@@ -6,18 +6,23 @@
 //! polygons of level 1, 2, 3. Last row: their fig. 8, a close-up at level 3, (a) to (c) from left to right.
 
 mod paper;
+#[path = "paper/scene.rs"]
+mod scene;
 
+use catoptric::field::{Camera, Projection};
 use catoptric::gpu::{Frame, Pipeline, View};
 use catoptric::output::write_whole;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
-use paper::{EXACT, Failure, Stage, close_up, drawn_by, enlargement, exit};
+use paper::{EXACT, Failure, drawn_by, exit};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// Side of a panel and width of the gutters in pixels.
 const PANEL: u32 = 320;
 const GUTTER: u32 = 8;
+/// Levels of the polygon, and by how much the paper enlarges the viewport each way (sec. 5: 1.7^2, 1.3^2 and 1 times).
+const ENLARGE: [(u32, f64); 3] = [(1, 1.7), (2, 1.3), (3, 1.0)];
 /// What the figures show of the picture of `catoptric render`: a point in parts of its sides, and how much larger.
 type Part = ([f64; 2], f64);
 /// The end of the wheel arch.
@@ -34,15 +39,13 @@ fn run() -> Result<(), Failure> {
     let (Some(path), None) = (arguments.next().map(PathBuf::from), arguments.next()) else {
         return Err("give the PNG file to write, and nothing else".into());
     };
-    let stage = Stage::load(None)?;
-    let whole = View { samples: 2, ..stage.view([PANEL; 2])? };
-    let part = |(center, zoom): Part| View { camera: close_up(&whole.camera, center, zoom), ..whole.clone() };
+    let (stage, view) = scene::load(None, [PANEL; 2])?;
+    let whole = View { samples: 2, ..view };
+    let part = |part| View { camera: close_up(&whole.camera, part), ..whole.clone() };
     let [view, close] = [FIGURE_7, FIGURE_8].map(part);
     let mut panels = Vec::new();
     for pipeline in [Pipeline::Polygon, Pipeline::Points, EXACT] {
-        for level in [1, 2, 3] {
-            panels.push(drawn_by(&view, pipeline, level, enlargement(level)));
-        }
+        panels.extend(ENLARGE.map(|(level, enlarge)| drawn_by(&view, pipeline, level, enlarge)));
     }
     panels.extend([Pipeline::Polygon, Pipeline::Points, EXACT].map(|pipeline| drawn_by(&close, pipeline, 3, 1.0)));
     let frames: Result<Vec<Frame>, _> = panels.iter().map(|view| stage.gpu.render(&stage.tables, view)).collect();
@@ -54,6 +57,19 @@ fn run() -> Result<(), Failure> {
             .map_err(std::io::Error::other)
     })?;
     Ok(())
+}
+
+/// The part of a picture round a point of it, from the same eye.
+fn close_up(camera: &Camera, (center, zoom): Part) -> Camera {
+    let [w, h] = camera.size.map(f64::from);
+    let ray = camera.pixel_ray(center[0] * w, center[1] * h);
+    let projection = match camera.projection {
+        Projection::Perspective { fov } => {
+            Projection::Perspective { fov: 2.0 * ((fov.to_radians() / 2.0).tan() / zoom).atan().to_degrees() }
+        }
+        Projection::Orthographic { height } => Projection::Orthographic { height: height / zoom },
+    };
+    Camera { target: camera.eye + ray.direction * camera.eye.distance(camera.target), projection, ..*camera }
 }
 
 /// Panels in rows, white between them.

@@ -5,11 +5,15 @@
 //! The reference is the limit surface on each pixel's ray, in f64. *Gaps* are pixels of surface that show none, 4 pixels and
 //! more from the background; *missed* are those nearer to it, *beyond* are pixels of background that show surface.
 
+#[path = "paper/measure.rs"]
+mod measure;
 mod paper;
+#[path = "paper/scene.rs"]
+mod scene;
 
 use catoptric::gpu::Pipeline;
-use paper::measure::Reference;
-use paper::{EXACT, Failure, Stage, drawn_by, exit, name};
+use measure::Reference;
+use paper::{EXACT, Failure, drawn_by, exit};
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -27,8 +31,7 @@ fn run() -> Result<(), Failure> {
         [mesh] => Some(Path::new(mesh)),
         _ => return Err("give one mesh (.obj), or none for the built-in sample".into()),
     };
-    let stage = Stage::load(mesh)?;
-    let view = stage.view(SIZE)?;
+    let (stage, view) = scene::load(mesh, SIZE)?;
     let reference = Reference::new(&stage, &view)?;
     let [covered, unsolved] = reference.counts();
     println!(
@@ -45,10 +48,10 @@ fn run() -> Result<(), Failure> {
     for level in LEVELS {
         for (pipeline, enlarge) in pipelines.clone() {
             let image = stage.gpu.inspect(&stage.tables, &drawn_by(&view, pipeline, level, enlarge))?;
-            let errors = reference.errors(&view, &image);
+            let errors = reference.errors(&image);
             let name = match pipeline {
                 Pipeline::Points => format!("points x {enlarge}"),
-                _ => name(pipeline),
+                _ => format!("{pipeline:?}").to_lowercase(),
             };
             let [gaps, missed] = errors.missed;
             let beyond = errors.beyond;

@@ -1,6 +1,6 @@
 //! How far a picture is off the limit surface on each pixel's ray, in f64.
 
-use super::{EXACT, Failure, Stage, drawn_by};
+use super::paper::{EXACT, Failure, Stage, drawn_by};
 use catoptric::field::Camera;
 use catoptric::gpu::{MAX_PROXY_LEVEL, NO_PATCH, SurfaceImage, View};
 use catoptric::patch::Adjacency;
@@ -66,7 +66,7 @@ impl Reference {
     }
 
     /// What is wrong with a picture of the same view.
-    pub fn errors(&self, view: &View, image: &SurfaceImage) -> Errors {
+    pub fn errors(&self, image: &SurfaceImage) -> Errors {
         let (mut missed, mut beyond) = ([0; 2], 0);
         let (mut angles, mut shifts) = (Vec::new(), Vec::new());
         for i in 0..self.covered.len() {
@@ -87,7 +87,6 @@ impl Reference {
                 (false, false) => (),
             }
         }
-        debug_assert_eq!(view.camera.size, self.size);
         shifts.retain(|shift| shift.is_finite());
         Errors { missed, beyond, normal: Spread::of(angles), lines: Spread::of(shifts) }
     }
