@@ -144,7 +144,8 @@ fn visible(c: Corner) -> Found {
     let middle = bitcast<f32>(c.id.w);
     let depth = select((lens.far - middle - z) * lens.scale, lens.near / (middle + middle * z), lens.perspective > 0.0);
     let converged = moved < SETTLED;
-    if converged && beyond > BAND * weight {
+    // Greater than 1: before the near plane of an orthographic view.
+    if depth > 1.0 || converged && beyond > BAND * weight {
         discard;
     }
     let state = select(STATE_DOUBTFUL, STATE_CHART, converged);

@@ -14,7 +14,7 @@ const FEW: u32 = 2;
 /// Longest side of a chart's bounds in samples: larger ones overlap more tiles that they do not cover, and take more steps.
 const LARGEST: f64 = 48.0;
 /// Levels below which nothing straddles the near plane any more: what is left lies on it.
-const DEEPEST: u32 = 40;
+const DEEPEST: u32 = 32;
 
 /// What a patch gives.
 #[derive(Debug, Default)]
@@ -65,6 +65,10 @@ impl<'a> Divider<'a> {
                         return;
                     }
                     if bounds.extent() < POINT {
+                        // In an orthographic view it may lie before the near plane.
+                        if bounds.near < self.lens.near {
+                            return;
+                        }
                         self.speck([columns.start, rows.start], [0.0; 2], bounds.near);
                         return;
                     }

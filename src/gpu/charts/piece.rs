@@ -100,7 +100,8 @@ pub(super) fn seen<const N: usize>(lens: &Lens, points: impl Iterator<Item = [[f
         return Seen::No;
     }
     let near = least(&near);
-    if near < lens.near {
+    // Parallel lines of sight have no singular plane: what lies before the near plane is left out where it is found.
+    if lens.perspective && near < lens.near {
         return Seen::Straddles;
     }
     Seen::Within(Bounds { low: low.each_ref().map(least), high: high.each_ref().map(most), near })

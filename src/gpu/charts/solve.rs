@@ -21,11 +21,11 @@ pub(super) const POINT: f64 = 2e-4;
 /// elsewhere. Within [`BAND`] of the piece's border, the border is seen.
 pub(super) fn first_hit(lens: &Lens, piece: &Piece, bounds: &Bounds, p: [f64; 2]) -> Option<Hit> {
     if let Some(frame) = chart(lens, piece, bounds) {
-        return newton(lens, piece, &frame, p);
+        return newton(lens, piece, &frame, p).filter(|hit| hit.depth >= lens.near);
     }
     let mut first: Option<Hit> = None;
     let mut keep = |hit: Hit| {
-        if first.is_none_or(|first| hit.depth < first.depth) {
+        if hit.depth >= lens.near && first.is_none_or(|first| hit.depth < first.depth) {
             first = Some(hit);
         }
     };
