@@ -50,6 +50,7 @@ macro_rules! same_layout {
 #[test]
 fn structs_have_the_same_layout_on_both_sides() {
     same_layout!("Draw", DrawRecord { first, group_size, padding });
+    same_layout!("Span", SpanRecord { first, count, groups, rows });
     same_layout!(
         "Frame",
         FrameRecord { clip_x, near, clip_y, focal, clip_depth, proxy_level, scale, shift, size, orthographic, padding }
