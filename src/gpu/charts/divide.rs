@@ -45,8 +45,7 @@ impl<'a> Divider<'a> {
         match nets {
             PatchNets::Regular(net) => {
                 let owed = levels.map(|own| self.level.saturating_sub(own));
-                self.pieces.push(Piece::new(self.lens, net[5], &net.map(|p| p - net[5]), [0.0; 2], 1.0, owed));
-                self.cut();
+                self.cut(Piece::new(self.lens, net[5], &net.map(|p| p - net[5]), [0.0; 2], 1.0, owed));
             }
             PatchNets::Irregular(rings) => self.irregular(levels, rings),
         }
@@ -79,15 +78,18 @@ impl<'a> Divider<'a> {
             let owed = levels.map(|own| self.level.saturating_sub(own).saturating_sub(level.min(255) as u8));
             for ([i, j], net) in WINDOWS.into_iter().zip(rings.windows()) {
                 let origin = [i as f64 * size, j as f64 * size];
-                self.pieces.push(Piece::new(self.lens, limit, &net, origin, size, owed));
+                self.cut(Piece::new(self.lens, limit, &net, origin, size, owed));
             }
-            self.cut();
             rings.descend();
         }
     }
 
     /// Cuts until everything is a chart, solved, or out of sight.
-    fn cut(&mut self) {
+    fn cut(&mut self, piece: Piece) {
+        if piece.seen(self.lens) == Seen::No || piece.has_no_area() {
+            return;
+        }
+        self.pieces.push(piece);
         while let Some(piece) = self.pieces.pop() {
             let seen = piece.seen(self.lens);
             match seen {

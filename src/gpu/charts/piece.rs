@@ -116,8 +116,9 @@ pub(super) fn seen<const N: usize>(lens: &Lens, points: impl Iterator<Item = [[f
     }
     let near = least(&near);
     // Parallel lines of sight have no singular plane: what lies before the near plane is left out where it is found.
+    // And what lies wholly within twice its distance is left out, for halves of what crosses it never end.
     if lens.perspective && near < lens.near {
-        return Seen::Straddles;
+        return if most(&far) < 2.0 * lens.near { Seen::No } else { Seen::Straddles };
     }
     Seen::Within(Bounds { low: low.each_ref().map(least), high: high.each_ref().map(most), near })
 }
@@ -179,6 +180,19 @@ impl Piece {
         }
         let [along_u, along_v] = lengths.map(|lengths| lengths.into_iter().fold(0.0, max));
         along_v > along_u
+    }
+
+    /// Whether all control points lie on a line in space: what they control has no area, and no line of sight meets it.
+    pub fn has_no_area(&self) -> bool {
+        let point = |k: usize| DVec3::from_array(std::array::from_fn(|c| self.net[c][k / 4][k % 4]));
+        let from = point(0);
+        let farthest = (1..16)
+            .map(|k| point(k) - from)
+            .fold(DVec3::ZERO, |far, d| if d.length_squared() > far.length_squared() { d } else { far });
+        // Relative to the length of the line; rounding is below it unless the eye is a million lengths away.
+        const ROUNDING: f64 = 1e-10;
+        let most = ROUNDING * farthest.length_squared();
+        (1..16).all(|k| (point(k) - from).cross(farthest).length() <= most)
     }
 
     /// The line that the piece is seen as, if its projected hull is nowhere wider than [`POINT`].

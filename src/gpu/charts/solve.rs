@@ -34,7 +34,7 @@ pub(super) fn first_hit(lens: &Lens, piece: &Piece, bounds: &Bounds, p: [f64; 2]
         match seen {
             Seen::No => continue,
             Seen::Within(bounds) => {
-                if !bounds.contains(p) || first.is_some_and(|first| first.depth <= bounds.near) {
+                if !bounds.contains(p) || first.is_some_and(|first| !lens.is_nearer(bounds.near, first.depth)) {
                     continue;
                 }
                 if bounds.extent() < POINT || depth == DEEPEST {
