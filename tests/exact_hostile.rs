@@ -1,5 +1,6 @@
 //! Views and shapes that ask too much of a pixel-exact pipeline: it must end, stay finite and vouch for every pixel.
 
+#[allow(dead_code, reason = "each test program uses its part")]
 mod gpu_support;
 
 use catoptric::field::{Camera, Light, Projection};
@@ -86,7 +87,8 @@ fn hostile_views_end() {
 /// Flat, on a line, in a point, tiny, huge, far away.
 #[test]
 fn degenerate_shapes_end() {
-    let deform: [(&str, fn(DVec3) -> DVec3); 6] = [
+    type Deform = fn(DVec3) -> DVec3;
+    let deform: [(&str, Deform); 6] = [
         ("flat", |p| dvec3(p.x, p.y, 0.0)),
         ("on a line", |p| DVec3::splat(p.x + 0.3 * p.y)),
         ("in a point", |_| DVec3::ONE),

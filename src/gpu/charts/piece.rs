@@ -260,7 +260,7 @@ impl Piece {
         // Squares of the product of lengths and, relative to it, of the sine of the angle: thinner parallelograms would lose digits
         // in f32.
         let lengths = (du[0] * du[0] + du[1] * du[1]) * (dv[0] * dv[0] + dv[1] * dv[1]);
-        if !(determinant * determinant > 1e-6 * lengths) {
+        if (determinant * determinant).partial_cmp(&(1e-6 * lengths)) != Some(std::cmp::Ordering::Greater) {
             return None;
         }
         let inverse = [[dv[1] / determinant, -dv[0] / determinant], [-du[1] / determinant, du[0] / determinant]];
