@@ -87,6 +87,7 @@ impl Module {
 const RECORDS: &str = include_str!("../../shaders/shared/records.wgsl");
 const TABLES: &str = include_str!("../../shaders/shared/tables.wgsl");
 const LIMIT_POINT: &str = include_str!("../../shaders/shared/limit_point.wgsl");
+const CHART: &str = include_str!("../../shaders/shared/chart.wgsl");
 const FULLSCREEN: &str = include_str!("../../shaders/shared/fullscreen.wgsl");
 const VISIBILITY_PASS: &str = include_str!("../../shaders/visibility.wgsl");
 const SURFACE: &str = include_str!("../../shaders/shared/surface.wgsl");
@@ -140,7 +141,7 @@ pub const EVALUATE: Module =
 /// Samples solved on the host.
 pub const SPECKS: Module = Module { name: "specks", files: &[include_str!("../../shaders/specks.wgsl")] };
 /// What each sample sees first.
-pub const CHARTS: Module = Module { name: "charts", files: &[include_str!("../../shaders/charts.wgsl")] };
+pub const CHARTS: Module = Module { name: "charts", files: &[CHART, include_str!("../../shaders/charts.wgsl")] };
 
 /// All modules.
 pub const MODULES: [Module; 10] =

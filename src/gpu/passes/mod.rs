@@ -86,7 +86,10 @@ pub(super) struct Scene<'a> {
 
 impl<'a> Scene<'a> {
     pub fn new(device: &Device, tables: &'a Tables, view: &'a View) -> Result<Self, GpuError> {
-        let proxy = Proxy::new(&tables.cells, view.proxy_level_for(tables));
+        let proxy = match view.pipeline {
+            Pipeline::Exact => Proxy::default(),
+            _ => Proxy::new(&tables.cells, view.proxy_level_for(tables)),
+        };
         Ok(Scene {
             tables,
             view,
