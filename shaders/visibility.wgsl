@@ -59,6 +59,24 @@ fn push_distance(c: vec3f, d: vec3f) -> f32 {
     return PUSH / max(speed, 0.1 * head_on);
 }
 
+// Where a point of a patch, relative to its origin, is in the picture.
+fn projected(patch_id: u32, position: vec3f) -> vec4f {
+    let clip = textureLoad(views, at(2u * patch_id), 0).xyz + clip_direction(position);
+    let depth = depth_of(clip.z);
+    return vec4f(clip.xy * frame.scale + frame.shift * depth.y, depth);
+}
+
+// For `--pipeline points`: the polygon as it is, no border moved.
+@vertex
+fn vertex_plain(@location(0) uv: vec2f, @location(1) member: u32, @builtin(instance_index) group: u32) -> Vertex {
+    let patch_id = order[draw.first + group * draw.group_size + member];
+    if patch_id == NO_PATCH {
+        return Vertex(vec4f(2.0, 2.0, 0.0, 1.0), vec2f(0.0), 0u, vec3f(0.0), vec3f(0.0));
+    }
+    let p = limit_point(textureLoad(patches, at(patch_id), 0), uv);
+    return Vertex(projected(patch_id, p.position), uv, patch_id, p.position, p.normal);
+}
+
 @vertex
 fn vertex(@location(0) uv: vec2f, @location(1) member: u32, @builtin(instance_index) group: u32) -> Vertex {
     let patch_id = order[draw.first + group * draw.group_size + member];

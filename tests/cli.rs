@@ -115,6 +115,11 @@ fn bad_usage_is_refused() {
         (&["render", "--eye", "1,2"], "X,Y,Z"),
         (&["render", "--eye", "1,2,nan"], "X,Y,Z"),
         (&["render", "--pipeline", "magic"], "magic"),
+        (&["render", "--pipeline", "points", "--enlarge", "0.5"], "from 1 to 8"),
+        (&["render", "--pipeline", "points", "--enlarge", "nan"], "from 1 to 8"),
+        (&["render", "--pipeline", "polygon", "--enlarge", "1"], "--pipeline points"),
+        (&["render", "--enlarge", "1.7"], "--pipeline points"),
+        (&["render", "--pipeline", "points", "--size", "4097x8"], "samples a side"),
         (&["render", "--pattern", "no-such.png"], "no-such.png"),
         (&["render", "-o", "no-such-folder/out.png"], "no-such-folder"),
         (
@@ -319,7 +324,7 @@ fn pictures_have_their_size_and_repeat_bit_by_bit() {
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         std::fs::read(folder.path(name)).expect("the picture is written")
     };
-    for pipeline in ["limit", "polygon"] {
+    for pipeline in ["limit", "polygon", "points"] {
         let first = render("a.png", pipeline);
         assert_eq!(first, render("b.png", pipeline));
         let picture = image::load_from_memory(&first).expect("a PNG");

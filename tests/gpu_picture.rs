@@ -3,7 +3,9 @@
 mod gpu_support;
 
 use catoptric::field::{Camera, Field, Light, Pattern, Projection, reflection_direction};
-use catoptric::gpu::{Frame, Gpu, GpuError, NO_PATCH, Palette, Pipeline, SurfaceImage, TableLayout, Tables, View};
+use catoptric::gpu::{
+    Frame, Gpu, GpuError, NO_PATCH, Palette, Pipeline, Stage, State, SurfaceImage, TableLayout, Tables, View,
+};
 use catoptric::mesh::{Crease, SubdivMesh};
 use catoptric::stam::LimitSurface;
 use glam::{DVec2, DVec3, dvec3};
@@ -189,6 +191,52 @@ fn pictures_are_the_same_every_time() {
     let other = Gpu::new().expect("an adapter");
     let again = other.render(&other.upload(&surface).expect("it fits"), &view).expect("the adapter works");
     assert!(first == again.rgba8, "a new device draws another picture");
+}
+
+/// Fragment and compute passes run the same functions: on one adapter the same bits. `auto` may choose either.
+#[test]
+fn stages_draw_the_same_picture() {
+    for name in ["semi_sharp_crease.obj", "pole_8.obj"] {
+        let (surface, tables) = upload(&mesh(name));
+        for pattern in [Pattern::Stripes { width: 0.4 }, Pattern::Circles { radius: 0.3 }] {
+            let of = |stage, pipeline| {
+                let view = View { stage, pipeline, pattern: pattern.clone(), ..view(&surface, dvec3(2.0, 1.0, 1.0)) };
+                render(&tables, &view).rgba8
+            };
+            for pipeline in [Pipeline::Exact, Pipeline::Limit, Pipeline::Polygon] {
+                let fragment = of(Stage::Fragment, pipeline);
+                let differ = |stage| fragment.iter().zip(of(stage, pipeline)).filter(|&(&a, b)| a != b).count();
+                let [compute, auto] = [Stage::Compute, Stage::Auto].map(differ);
+                assert_eq!([compute, auto], [0, 0], "{name}, {pattern:?}, {pipeline:?}: bytes that differ");
+            }
+        }
+    }
+}
+
+/// What the exact pipeline says of its pixels: every one has a certificate, and the sum is that of the pixels.
+#[test]
+fn every_pixel_has_a_certificate() {
+    let (surface, tables) = upload(&mesh("pole_5.obj"));
+    let view = View { proxy_level: None, ..view(&surface, dvec3(2.0, 1.0, 1.0)) };
+    let image = inspect(&tables, &view);
+    let summary = image.summary();
+    assert_eq!(summary.samples, image.patch.len() as u64);
+    assert_eq!(summary.covered, covered(&image).count() as u64);
+    assert_eq!(summary.unconverged, 0);
+    assert!(summary.residual_max < 1e-3 && summary.solved < summary.covered / 10, "{summary:?}");
+    for (certificate, &patch) in image.certificate.iter().zip(&image.patch) {
+        assert_eq!(certificate.state == State::Background, patch == NO_PATCH);
+        assert_eq!(certificate.steps > 0, certificate.state == State::Chart);
+    }
+    assert_eq!(
+        render(&tables, &view).summary,
+        Some(summary),
+        "one sample a pixel: the picture sees what inspection sees"
+    );
+    let proxy = inspect(&tables, &View { pipeline: Pipeline::Limit, proxy_level: Some(1), ..view.clone() });
+    assert!(proxy.certificate.iter().all(|c| matches!(c.state, State::Proxy | State::Background)));
+    assert!(proxy.summary().residual_max > 0.1, "the proxy's parameters miss their rays");
+    assert_eq!(render(&tables, &View { pipeline: Pipeline::Limit, ..view }).summary, None);
 }
 
 /// The layouts agree to f32 rounding, so pictures differ where a pixel lies on the edge of a patch, and by single steps

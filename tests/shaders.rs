@@ -50,6 +50,7 @@ macro_rules! same_layout {
 #[test]
 fn structs_have_the_same_layout_on_both_sides() {
     same_layout!("Draw", DrawRecord { first, group_size, padding });
+    same_layout!("Span", SpanRecord { first, count, groups, rows });
     same_layout!(
         "Frame",
         FrameRecord { clip_x, near, clip_y, focal, clip_depth, proxy_level, scale, shift, size, orthographic, padding }
@@ -76,5 +77,6 @@ fn structs_have_the_same_layout_on_both_sides() {
             padding4
         }
     );
+    same_layout!("Lens", LensRecord { size, perspective, near, far, scale, padding });
     same_layout!("Resolve", ResolveRecord { top, samples, bottom, row, rows });
 }

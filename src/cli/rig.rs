@@ -2,7 +2,7 @@
 
 use super::Failure;
 use super::args::vector;
-use crate::field::{Camera, DEFAULT_FOV, Light, Projection, Scout};
+use crate::field::{Camera, DEFAULT_FOV, Light, Projection, Scout, sample_rig};
 use clap::{Args, ValueEnum};
 use glam::DVec3;
 
@@ -61,13 +61,6 @@ fn fov(text: &str) -> Result<f64, String> {
 fn extents(text: &str) -> Result<[f64; 2], String> {
     let sides = text.split_once(',').and_then(|(w, l)| Some([positive(w).ok()?, positive(l).ok()?]));
     sides.ok_or("give two numbers above 0, W,L".to_owned())
-}
-
-/// Direction of sight and light that show the built-in sample best: the fender in three-quarter view, mirroring a wall of
-/// tubes behind and beside the car, whose lines run over shoulder, feature line and wheel arch.
-fn sample_rig() -> (DVec3, Light) {
-    let [center, facing, lines] = [[3.6, 2.7, 1.5], [-0.72, -0.63, -0.28], [0.38, -0.55, 0.60]].map(DVec3::from_array);
-    (DVec3::new(-1.90, 2.10, 0.81), Light::new(center, facing, lines, 1.0))
 }
 
 impl RigArgs {

@@ -52,6 +52,9 @@ pub(super) fn made_by(args: &RenderArgs, mesh: u64, view: &View) -> String {
         Pattern::Picture(_) => {}
     }
     add("pipeline", value_name(&args.pipeline));
+    if view.enlarge != 1.0 {
+        add("enlarge", view.enlarge.to_string());
+    }
     add("tables", args.layout.to_string());
     if let Some(level) = view.proxy_level {
         add("proxy-level", level.to_string());

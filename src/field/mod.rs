@@ -14,7 +14,7 @@ pub use camera::{Axes, Camera, DEFAULT_FOV, Projection, Ray};
 pub use light::Light;
 pub use pattern::{Pattern, Picture};
 pub use reflection::{reflection, reflection_direction};
-pub use rig::Scout;
+pub use rig::{Scout, sample_rig};
 
 use glam::{DVec2, DVec3};
 

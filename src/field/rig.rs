@@ -16,6 +16,13 @@ pub struct Scout {
     bounds: [DVec3; 2],
 }
 
+/// Direction of sight, from the object to the eye, and light that show the built-in sample best: the fender in three-quarter
+/// view, mirroring a wall of tubes behind and beside the car, whose lines run over shoulder, feature line and wheel arch.
+pub fn sample_rig() -> (DVec3, Light) {
+    let [center, facing, lines] = [[3.6, 2.7, 1.5], [-0.72, -0.63, -0.28], [0.38, -0.55, 0.60]].map(DVec3::from_array);
+    (DVec3::new(-1.90, 2.10, 0.81), Light::new(center, facing, lines, 1.0))
+}
+
 /// Points looked at, about.
 const BUDGET: usize = 40_000;
 /// Points a ptex face, each way; inside it, because derivatives may be infinite at its corners.

@@ -5,7 +5,7 @@ use super::charts::Charts;
 use super::device::Device;
 use super::passes::{self, Colour, Passes, PictureTargets, Scene, SurfaceTargets, Visible};
 use super::view::{Tile, View};
-use super::{GpuError, Pipeline, Stage, Tables};
+use super::{GpuError, Pipeline, Stage, Tables, paper};
 use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 use std::time::{Duration, Instant};
@@ -21,7 +21,7 @@ pub struct Timings {
 }
 
 impl Timings {
-    fn time<R>(&mut self, name: &'static str, step: impl FnOnce() -> R) -> R {
+    pub(super) fn time<R>(&mut self, name: &'static str, step: impl FnOnce() -> R) -> R {
         let start = Instant::now();
         let result = step();
         let elapsed = start.elapsed();
@@ -81,6 +81,21 @@ pub struct SurfaceImage {
 }
 
 impl SurfaceImage {
+    /// No surface anywhere.
+    pub(super) fn empty(size: [u32; 2]) -> SurfaceImage {
+        let count = size[0] as usize * size[1] as usize;
+        SurfaceImage {
+            size,
+            patch: vec![NO_PATCH; count],
+            uv: vec![[0.0; 2]; count],
+            position: vec![DVec3::ZERO; count],
+            normal: vec![[0.0; 3]; count],
+            field: vec![None; count],
+            certificate: vec![Certificate::default(); count],
+            timings: Timings::default(),
+        }
+    }
+
     /// The certificates, summed up.
     pub fn summary(&self) -> Summary {
         Summary::of(&self.certificate)
@@ -103,10 +118,10 @@ pub(super) fn render_linear(
 }
 
 /// A picture in pixels of some kind.
-struct Drawn<T> {
-    pixels: Vec<T>,
-    summary: Option<Summary>,
-    timings: Timings,
+pub(super) struct Drawn<T> {
+    pub pixels: Vec<T>,
+    pub summary: Option<Summary>,
+    pub timings: Timings,
 }
 
 /// Draws a picture whose pixels are `T`, which is what `colour` comes in.
@@ -118,6 +133,9 @@ fn draw<T: bytemuck::Pod>(
     colour: Colour,
 ) -> Result<Drawn<T>, GpuError> {
     view.check()?;
+    if view.pipeline == Pipeline::Points {
+        return paper::draw(device, passes, tables, view, colour);
+    }
     let mut timings = Timings::default();
     timings.time("compile", || passes.prepare(device, view.pipeline, colour));
     let scene = timings.time("scene", || Scene::new(device, tables, view))?;
@@ -151,20 +169,13 @@ pub(super) fn inspect(
     view: &View,
 ) -> Result<SurfaceImage, GpuError> {
     view.check()?;
+    if view.pipeline == Pipeline::Points {
+        return paper::inspect(device, passes, tables, view);
+    }
     let mut timings = Timings::default();
     let scene = timings.time("scene", || Scene::new(device, tables, view))?;
     let size = view.camera.size;
-    let count = size[0] as usize * size[1] as usize;
-    let mut image = SurfaceImage {
-        size,
-        patch: vec![NO_PATCH; count],
-        uv: vec![[0.0; 2]; count],
-        position: vec![DVec3::ZERO; count],
-        normal: vec![[0.0; 3]; count],
-        field: vec![None; count],
-        certificate: vec![Certificate::default(); count],
-        timings: Timings::default(),
-    };
+    let mut image = SurfaceImage::empty(size);
     for tile in Tile::cover(size, 1, Tile::SURFACE_SIDE) {
         let visible = Visible::new(device, &tile, view.pipeline);
         let surface = SurfaceTargets::new(device, &tile);
@@ -177,7 +188,7 @@ pub(super) fn inspect(
 }
 
 /// The stage that the view asks for; where it leaves the choice, the one that took less time over the first tile.
-fn choose_stage(
+pub(super) fn choose_stage(
     device: &Device,
     passes: &Passes,
     scene: &Scene<'_>,
@@ -226,13 +237,13 @@ fn see(
 
 fn limit_step(view: &View) -> &'static str {
     match view.pipeline {
-        Pipeline::Exact | Pipeline::Limit => "limit",
+        Pipeline::Exact | Pipeline::Limit | Pipeline::Points => "limit",
         Pipeline::Polygon => "polygon",
     }
 }
 
 /// Reads one tile into the image of the whole picture, a texture at a time.
-fn read_tile(
+pub(super) fn read_tile(
     device: &Device,
     scene: &Scene<'_>,
     visible: &Visible,

@@ -18,6 +18,7 @@ mod certificate;
 mod charts;
 mod device;
 mod frame;
+mod paper;
 mod passes;
 mod proxy;
 pub mod records;
@@ -29,7 +30,7 @@ pub use certificate::{Certificate, State, Summary};
 pub use device::AdapterChoice;
 pub use frame::{Frame, LinearFrame, NO_PATCH, SurfaceImage, Timings};
 pub use tables::{PatchSource, TableLayout, Tables};
-pub use view::{MAX_PROXY_LEVEL, MAX_SAMPLES, Palette, Pipeline, Stage, View};
+pub use view::{MAX_ENLARGE, MAX_POINTS_SIDE, MAX_PROXY_LEVEL, MAX_SAMPLES, Palette, Pipeline, Stage, View};
 
 use crate::stam::{Jet, LimitSurface};
 use device::Device;

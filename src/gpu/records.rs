@@ -26,6 +26,20 @@ pub struct DrawRecord {
     pub padding: [u32; 2],
 }
 
+/// `Span`, shaders/rectangle.wgsl: the vertices of a draw.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct SpanRecord {
+    /// First vertex of the group.
+    pub first: u32,
+    /// Vertices in a group.
+    pub count: u32,
+    /// Groups.
+    pub groups: u32,
+    /// Groups a layer of the dispatch.
+    pub rows: u32,
+}
+
 /// A chart, as instance attributes 0 to 15 of shaders/charts.wgsl, which says what they are.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable, PartialEq)]

@@ -87,16 +87,25 @@ impl Module {
 const RECORDS: &str = include_str!("../../shaders/shared/records.wgsl");
 const TABLES: &str = include_str!("../../shaders/shared/tables.wgsl");
 const LIMIT_POINT: &str = include_str!("../../shaders/shared/limit_point.wgsl");
+const CHART: &str = include_str!("../../shaders/shared/chart.wgsl");
 const FULLSCREEN: &str = include_str!("../../shaders/shared/fullscreen.wgsl");
+const VISIBILITY_PASS: &str = include_str!("../../shaders/visibility.wgsl");
 const SURFACE: &str = include_str!("../../shaders/shared/surface.wgsl");
 const OCTAHEDRAL: &str = include_str!("../../shaders/shared/octahedral.wgsl");
 const PATTERN: &str = include_str!("../../shaders/shared/pattern.wgsl");
 const REFLECTION: &str = include_str!("../../shaders/field/reflection.wgsl");
 
 /// Rasterises the proxy.
-pub const VISIBILITY: Module = Module {
-    name: "visibility",
-    files: &[RECORDS, TABLES, LIMIT_POINT, include_str!("../../shaders/visibility.wgsl")],
+pub const VISIBILITY: Module = Module { name: "visibility", files: &[RECORDS, TABLES, LIMIT_POINT, VISIBILITY_PASS] };
+/// What the proxy covers.
+pub const RECTANGLE: Module = Module {
+    name: "rectangle",
+    files: &[RECORDS, TABLES, LIMIT_POINT, VISIBILITY_PASS, include_str!("../../shaders/rectangle.wgsl")],
+};
+/// Exact positions, drawn as points.
+pub const POINTS: Module = Module {
+    name: "points",
+    files: &[RECORDS, TABLES, LIMIT_POINT, VISIBILITY_PASS, FULLSCREEN, include_str!("../../shaders/points.wgsl")],
 };
 /// Exact surface per pixel.
 pub const LIMIT: Module = Module {
@@ -132,10 +141,11 @@ pub const EVALUATE: Module =
 /// Samples solved on the host.
 pub const SPECKS: Module = Module { name: "specks", files: &[include_str!("../../shaders/specks.wgsl")] };
 /// What each sample sees first.
-pub const CHARTS: Module = Module { name: "charts", files: &[include_str!("../../shaders/charts.wgsl")] };
+pub const CHARTS: Module = Module { name: "charts", files: &[CHART, include_str!("../../shaders/charts.wgsl")] };
 
 /// All modules.
-pub const MODULES: [Module; 8] = [SPECKS, CHARTS, VISIBILITY, LIMIT, POLYGON, SHADE, RESOLVE, EVALUATE];
+pub const MODULES: [Module; 10] =
+    [SPECKS, CHARTS, VISIBILITY, RECTANGLE, LIMIT, POLYGON, SHADE, POINTS, RESOLVE, EVALUATE];
 
 /// WGSL declarations of the constants above.
 fn constants(variant: &Variant) -> String {

@@ -11,6 +11,11 @@ use rayon::prelude::*;
 pub const MAX_PROXY_LEVEL: u32 = 8;
 /// Most samples a pixel each way.
 pub const MAX_SAMPLES: u32 = 4;
+/// Greatest enlargement of [`Pipeline::Points`].
+pub const MAX_ENLARGE: f64 = 8.0;
+/// Largest side, in samples, of a picture by [`Pipeline::Points`]: points land anywhere, so it is drawn in one piece,
+/// and its intermediate textures take 16 bytes a sample.
+pub const MAX_POINTS_SIDE: u32 = 4096;
 /// Largest picture side in pixels.
 const MAX_SIZE: u32 = 32_768;
 
@@ -24,6 +29,11 @@ pub enum Pipeline {
     Limit,
     /// Interpolated from the proxy's vertices, which have limit positions and normals (Yasui & Kanai 2004, fig. 7b).
     Polygon,
+    /// Yasui & Kanai's own (2004, sec. 4.4): the proxy is rasterised as it is, the limit evaluated at each of its
+    /// fragments, and these drawn as points of one sample at the projection of their exact positions. A point may land
+    /// beside the sample that it was rasterised at, so there are gaps where the proxy is coarse
+    /// ([`View::enlarge`]), and the silhouette is the proxy's.
+    Points,
 }
 
 /// Which kind of pass evaluates and shades over the visibility buffer. The picture does not depend on it.
@@ -83,6 +93,9 @@ pub struct View {
     pub proxy_level: Option<u32>,
     /// Samples a pixel each way, 1 to [`MAX_SAMPLES`].
     pub samples: u32,
+    /// Fragments a sample each way of [`Pipeline::Points`], 1 to [`MAX_ENLARGE`]; 1 with other pipelines. Yasui & Kanai
+    /// 2004, sec. 5 close the gaps of proxies of level 1 and 2 by viewports 1.7^2 and 1.3^2 times larger: 1.7 and 1.3.
+    pub enlarge: f64,
     /// Colours.
     pub palette: Palette,
 }
@@ -98,6 +111,7 @@ impl View {
             stage: Stage::default(),
             proxy_level: None,
             samples: 2,
+            enlarge: 1.0,
             palette: Palette::default(),
         }
     }
@@ -137,6 +151,7 @@ impl View {
         if !(1..=MAX_SAMPLES).contains(&self.samples) {
             return fail(format!("{} samples: must be 1 to {MAX_SAMPLES}", self.samples));
         }
+        self.check_enlargement()?;
         let light = self.light();
         let axes_ok = light.center.is_finite() && (light.normal().length() - 1.0).abs() < 1e-6;
         if !(axes_ok && light.spacing > 0.0 && light.spacing.is_finite()) {
@@ -150,6 +165,27 @@ impl View {
             }
             _ => Ok(()),
         }
+    }
+
+    fn check_enlargement(&self) -> Result<(), GpuError> {
+        let side = self.camera.size.map(|n| n * self.samples).into_iter().max().unwrap_or(0);
+        let problem = match self.pipeline {
+            Pipeline::Points if !(1.0..=MAX_ENLARGE).contains(&self.enlarge) => {
+                format!("enlargement {}: must be 1 to {MAX_ENLARGE}", self.enlarge)
+            }
+            Pipeline::Points if side > MAX_POINTS_SIDE => {
+                let [w, h] = self.camera.size;
+                format!(
+                    "{w}x{h} pixels at {} samples: points are drawn at up to {MAX_POINTS_SIDE} samples a side; choose fewer",
+                    self.samples
+                )
+            }
+            pipeline if pipeline != Pipeline::Points && self.enlarge != 1.0 => {
+                format!("enlargement {}: only the points pipeline takes one", self.enlarge)
+            }
+            _ => return Ok(()),
+        };
+        Err(GpuError::View(problem))
     }
 
     /// The level of the proxy: as asked, or such that a face of average size has cells of at most 4 pixels. An edge of
@@ -210,7 +246,7 @@ impl View {
 
     /// The projection of the part of the picture that `tile` draws.
     pub(super) fn frame_record(&self, tables: &Tables, tile: &Tile) -> FrameRecord {
-        let [w, h] = self.camera.size.map(|n| f64::from(n * tile.samples));
+        let [w, h] = self.camera.size.map(|n| f64::from(n * tile.samples) * tile.enlarge);
         let [tw, th] = tile.size.map(f64::from);
         let [x, y] = tile.origin.map(f64::from);
         let rows = self.clip_rows(tables);
@@ -271,7 +307,7 @@ impl View {
             tube,
             pattern,
             top,
-            samples: self.samples as f32,
+            samples: (f64::from(self.samples) * self.enlarge) as f32,
             bottom,
             padding1: 0.0,
             up: self.camera.up.normalize_or_zero().as_vec3().to_array(),
@@ -296,7 +332,7 @@ impl View {
     }
 }
 
-/// A rectangle of the picture, in samples.
+/// A rectangle of the picture, in samples (or in fragments, where these are denser: `enlarge`).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Tile {
     /// First sample.
@@ -305,6 +341,8 @@ pub(super) struct Tile {
     pub size: [u32; 2],
     /// Samples a pixel each way; divides origin and size.
     pub samples: u32,
+    /// Fragments a sample each way: 1 but for the parameters of [`Pipeline::Points`].
+    pub enlarge: f64,
 }
 
 impl Tile {
@@ -323,6 +361,7 @@ impl Tile {
             origin: [x, y],
             size: [(total[0] - x).min(side), (total[1] - y).min(side)],
             samples,
+            enlarge: 1.0,
         };
         starts(total[1]).flat_map(|y| starts(total[0]).map(move |x| tile(x, y))).collect()
     }

@@ -5,8 +5,8 @@ use crate::gpu::{Certificate, State, SurfaceImage};
 /// What is coloured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Heat {
-    /// Distance between a pixel's centre and the point that it shows, on a logarithmic scale from [`LEAST`] to
-    /// [`MOST`] pixels.
+    /// Distance between a pixel's centre and the point that it shows, on a logarithmic scale from 1e-6 to
+    /// 1 pixel.
     Residual,
     /// Newton steps: a colour each, from none (solved on the host) to six.
     Steps,

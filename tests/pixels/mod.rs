@@ -152,12 +152,16 @@ impl<'a> Judge<'a> {
 
     /// Size of a pixel at a point.
     fn footprint(&self, point: DVec3) -> f64 {
-        (point - self.camera.eye).dot(self.forward) * self.pixel
+        match self.camera.is_orthographic() {
+            true => self.pixel,
+            false => (point - self.camera.eye).dot(self.forward) * self.pixel,
+        }
     }
 
     /// Whether nothing hides a point.
     fn in_sight(&self, point: DVec3) -> bool {
-        let first = self.caster.first_hit(&Ray::new(self.camera.eye, point - self.camera.eye));
+        let [x, y] = self.camera.project(point).expect("it is seen");
+        let first = self.see([x, y]);
         first.is_some_and(|hit| hit.position.distance(point) <= LAYER * self.footprint(point))
     }
 

@@ -146,3 +146,63 @@ pub fn million_to_one() -> Scene {
         size: SIZE,
     })
 }
+
+/// Parallel lines of sight: fitted, a thousandth of the object, and with the eye's plane through its middle.
+pub fn orthographic() -> Vec<Scene> {
+    let fitted = |surface: &LimitSurface| {
+        let scout = Scout::new(surface).expect("it has patches");
+        scout.orthographic_from(SIZE, DVec3::Z, dvec3(0.6, -0.7, 0.5))
+    };
+    let near = |surface: &LimitSurface| {
+        let target = tip(surface, PatchKind::Smooth).position;
+        let camera = fitted(surface);
+        let projection = Projection::Orthographic { height: 1e-3 * surface.diagonal() };
+        Camera { eye: camera.eye - camera.target + target, target, projection, ..camera }
+    };
+    let within = |surface: &LimitSurface| {
+        let camera = fitted(surface);
+        Camera { eye: camera.target, target: camera.target * 2.0 - camera.eye, ..camera }
+    };
+    let names = ["pole_8.obj", "cube.obj", "n_gons.obj"];
+    let mesh_scenes = names.map(mesh).into_iter().flat_map(|mesh| {
+        [
+            Scene::new("orthographic", &mesh, fitted),
+            Scene::new("orthographic, a thousandth", &mesh, near),
+            Scene::new("orthographic, from the middle", &mesh, within),
+        ]
+    });
+    mesh_scenes.chain([Scene::new("orthographic", &mesh::sample(), fitted)]).collect()
+}
+
+/// Near to vertices whose innermost pieces are far thinner than long: sectors of a single face, rings of two.
+pub fn slivers() -> Vec<Scene> {
+    let scene = |name: &str, kind: PatchKind, elevation: f64| {
+        Scene::new(&format!("sliver, {elevation}"), &mesh(name), |surface| {
+            close(&tip(surface, kind), 0.02 * surface.diagonal(), elevation)
+        })
+    };
+    let places = [
+        ("boundary_pole_1.obj", PatchKind::Crease),
+        ("crease_sectors_1_3.obj", PatchKind::Crease),
+        ("valence_2_interior.obj", PatchKind::Smooth),
+        ("valence_2_sharp.obj", PatchKind::Corner),
+        ("corner.obj", PatchKind::Corner),
+    ];
+    let has = |&(name, kind): &(&str, PatchKind)| {
+        let surface = LimitSurface::new(&mesh(name)).expect("it has a surface");
+        (0..surface.patches().len()).any(|patch| surface.kind(patch) == kind)
+    };
+    places.into_iter().filter(has).flat_map(|(name, kind)| [40.0, 8.0].map(|angle| scene(name, kind, angle))).collect()
+}
+
+/// Every mesh of a folder, fitted.
+pub fn corpus(folder: &std::path::Path) -> Vec<Scene> {
+    let mut paths: Vec<_> =
+        std::fs::read_dir(folder).expect("it is readable").map(|entry| entry.expect("an entry").path()).collect();
+    paths.sort();
+    let meshes = paths.iter().filter_map(|path| mesh::read(path).ok());
+    let fitted = |surface: &LimitSurface| {
+        Scout::new(surface).expect("it has patches").camera_from(SIZE, DVec3::Z, dvec3(0.6, -0.7, 0.5), 26.0)
+    };
+    meshes.map(|mesh| Scene::new("", &mesh, fitted)).collect()
+}

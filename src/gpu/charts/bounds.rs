@@ -51,12 +51,36 @@ impl Bounds {
     }
 }
 
+/// A line in the picture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Line {
+    through: [f64; 2],
+    /// Unit vector across it.
+    across: [f64; 2],
+}
+
+impl Line {
+    /// Through two points.
+    pub fn new(a: [f64; 2], b: [f64; 2]) -> Line {
+        let d = [b[0] - a[0], b[1] - a[1]];
+        let length = (d[0] * d[0] + d[1] * d[1]).sqrt();
+        Line { through: a, across: [-d[1] / length, d[0] / length] }
+    }
+
+    pub fn distance(&self, [x, y]: [f64; 2]) -> f64 {
+        ((x - self.through[0]) * self.across[0] + (y - self.through[1]) * self.across[1]).abs()
+    }
+}
+
 /// Bounds of a projected net, and whether what it controls is seen at all.
 #[inline]
 pub(super) fn seen_net(lens: &Lens, [x, y, depth]: &[Net; 3]) -> Seen {
     let near = least(&across(depth, min));
     if near < lens.near {
-        return crossing(lens, (0..16).map(|k| DVec3::new(x[k / 4][k % 4], y[k / 4][k % 4], depth[k / 4][k % 4])));
+        let point = |k: usize| DVec3::new(x[k / 4][k % 4], y[k / 4][k % 4], depth[k / 4][k % 4]);
+        if let Some(seen) = crossing(lens, (0..16).map(point)) {
+            return seen;
+        }
     }
     let (mut low, mut high) = ([[f64::INFINITY; 4]; 2], [[f64::NEG_INFINITY; 4]; 2]);
     for j in 0..4 {
@@ -95,12 +119,15 @@ pub(super) fn seen(lens: &Lens, points: impl Iterator<Item = DVec3> + Clone) -> 
             bounds.high[axis] = max(bounds.high[axis], value);
         }
     }
-    if bounds.near < lens.near { crossing(lens, points) } else { Seen::Within(bounds) }
+    let crossing = if bounds.near < lens.near { crossing(lens, points) } else { None };
+    crossing.unwrap_or(Seen::Within(bounds))
 }
 
-/// Of points that do not all lie beyond the near plane: out of sight if all lie before it, or all beyond one side of the frustum.
+/// Of points that do not all lie beyond the near plane: out of sight if all lie before it, or all beyond one side of the
+/// frustum. `None` for parallel lines of sight, which have no singular plane: what lies before the near plane is left out where
+/// it is found.
 #[cold]
-fn crossing(lens: &Lens, points: impl Iterator<Item = DVec3>) -> Seen {
+fn crossing(lens: &Lens, points: impl Iterator<Item = DVec3>) -> Option<Seen> {
     let mut far = f64::NEG_INFINITY;
     // How far the points reach over each side from beyond.
     let mut reach = [[f64::NEG_INFINITY; 2]; 2];
@@ -112,6 +139,10 @@ fn crossing(lens: &Lens, points: impl Iterator<Item = DVec3>) -> Seen {
             reach[axis][1] = max(reach[axis][1], (lens.size[axis] - 0.5 + BAND) * weight - value);
         }
     }
+    if !lens.perspective {
+        return (far < lens.near).then_some(Seen::No);
+    }
+    // What lies wholly within twice the near distance is left out too, for halves of what crosses the plane never end.
     let beyond = reach.iter().flatten().any(|&reach| reach < 0.0);
-    if far < lens.near || beyond { Seen::No } else { Seen::Straddles }
+    Some(if far < 2.0 * lens.near || beyond { Seen::No } else { Seen::Straddles })
 }

@@ -1,6 +1,7 @@
 //! Cuts patches into charts, and solves what is too small for them.
 
-use super::bounds::{Seen, seen};
+use super::BAND;
+use super::bounds::{Bounds, Line, Seen, seen};
 use super::frame::{ChartFrame, Flat};
 use super::lens::Lens;
 use super::piece::Piece;
@@ -16,7 +17,7 @@ const FEW: usize = 2;
 /// Longest side of a chart's bounds in samples: larger ones overlap more tiles that they do not cover, and take more steps.
 const LARGEST: f64 = 48.0;
 /// Levels below which nothing straddles the near plane any more: what is left lies on it.
-const DEEPEST: u32 = 40;
+const DEEPEST: u32 = 32;
 
 /// What a patch gives.
 #[derive(Debug, Default)]
@@ -67,6 +68,10 @@ impl<'a> Divider<'a> {
                         return;
                     }
                     if bounds.extent() < POINT {
+                        // In an orthographic view it may lie before the near plane.
+                        if bounds.near < self.lens.near {
+                            return;
+                        }
                         self.speck([columns.start, rows.start], [0.0; 2], bounds.near);
                         return;
                     }
@@ -86,35 +91,45 @@ impl<'a> Divider<'a> {
 
     /// Cuts until everything is a chart, solved, or out of sight.
     fn cut(&mut self, piece: &mut Piece) {
-        let mut along_v = match piece.seen(self.lens) {
-            Seen::No => return,
-            Seen::Straddles if piece.size[0].min(piece.size[1]) < 0.5f64.powi(DEEPEST as i32) => return,
-            Seen::Straddles => piece.size[1] > piece.size[0],
-            Seen::Within(bounds) => {
-                let samples = bounds.samples(self.lens);
-                let count = samples[0].len() * samples[1].len();
-                if count == 0 {
-                    return;
-                }
-                if count > FEW && (piece.owed != [0; 2] || bounds.extent() > LARGEST) {
-                    piece.longer_along_v(self.lens, None)
-                } else {
-                    let flat = piece.flat(self.lens);
-                    let chart = flat.as_ref().and_then(|flat| flat.chart(&bounds));
-                    if count <= FEW {
-                        return self.solve(piece, flat, chart, samples);
-                    }
-                    if let Some(chart) = chart {
-                        return self.chart(piece, &chart);
-                    }
-                    piece.longer_along_v(self.lens, flat.as_ref())
-                }
-            }
-        };
-        if piece.owed != [0; 2] {
-            along_v = piece.owed[1] > piece.owed[0];
+        match piece.seen(self.lens) {
+            Seen::No => (),
+            Seen::Straddles if piece.size[0].min(piece.size[1]) < 0.5f64.powi(DEEPEST as i32) => (),
+            Seen::Straddles if piece.has_no_area() => (),
+            Seen::Straddles => self.halves(piece, piece.size[1] > piece.size[0]),
+            Seen::Within(bounds) => self.within(piece, &bounds),
         }
-        let mut upper = piece.split(along_v);
+    }
+
+    fn within(&mut self, piece: &mut Piece, bounds: &Bounds) {
+        let samples = bounds.samples(self.lens);
+        let count = samples[0].len() * samples[1].len();
+        if count == 0 {
+            return;
+        }
+        let is_small = count <= FEW || piece.owed == [0; 2] && bounds.extent() <= LARGEST;
+        let flat = if is_small { piece.flat(self.lens) } else { None };
+        if flat.is_none() && piece.has_no_area() {
+            return;
+        }
+        let chart = flat.as_ref().and_then(|flat| flat.chart(bounds));
+        if count <= FEW {
+            return self.solve(piece, flat.as_ref(), chart.as_ref(), samples);
+        }
+        if let Some(chart) = chart {
+            return self.chart(piece, &chart);
+        }
+        // Cutting a piece that is seen edge on would only give more that see the same samples.
+        if flat.is_none()
+            && let Some(line) = piece.line(self.lens)
+        {
+            return self.solve_line(piece, line, samples);
+        }
+        self.halves(piece, piece.longer_along_v(self.lens, flat.as_ref()));
+    }
+
+    fn halves(&mut self, piece: &mut Piece, longer_along_v: bool) {
+        let owes = piece.owed != [0; 2];
+        let mut upper = piece.split(if owes { piece.owed[1] > piece.owed[0] } else { longer_along_v });
         self.cut(piece);
         self.cut(&mut upper);
     }
@@ -132,23 +147,24 @@ impl<'a> Divider<'a> {
         });
     }
 
-    fn solve(
-        &mut self,
-        piece: &Piece,
-        flat: Option<Flat>,
-        chart: Option<ChartFrame>,
-        [columns, rows]: [Range<u32>; 2],
-    ) {
-        for (x, y) in rows.flat_map(|y| columns.clone().map(move |x| (x, y))) {
-            let p = [x, y].map(|k| f64::from(k) + 0.5);
-            let hit = match (&chart, &flat) {
+    /// Solves all samples in a piece's bounds.
+    fn solve(&mut self, piece: &Piece, flat: Option<&Flat>, chart: Option<&ChartFrame>, samples: [Range<u32>; 2]) {
+        for sample in each(samples) {
+            let p = centre(sample);
+            let hit = match (chart, flat) {
                 (Some(chart), _) => newton(self.lens, piece, chart, p),
                 (None, Some(flat)) if flat.misses(p) => None,
-                (None, flat) => first_hit(self.lens, piece, flat.as_ref(), p),
+                (None, _) => first_hit(self.lens, piece, flat, p),
             };
-            if let Some(hit) = hit {
-                self.speck([x, y], hit.uv, hit.depth);
-            }
+            hit.into_iter().for_each(|hit| self.speck(sample, hit.uv, hit.depth));
+        }
+    }
+
+    /// Solves the samples near the line that a piece is seen as.
+    fn solve_line(&mut self, piece: &Piece, line: Line, samples: [Range<u32>; 2]) {
+        for sample in each(samples).filter(|&sample| line.distance(centre(sample)) <= POINT + BAND) {
+            let hit = first_hit(self.lens, piece, None, centre(sample));
+            hit.into_iter().for_each(|hit| self.speck(sample, hit.uv, hit.depth));
         }
     }
 
@@ -156,6 +172,15 @@ impl<'a> Divider<'a> {
         let place = self.lens.place(sample, depth);
         self.out.specks.push(SpeckRecord { place, patch_id: self.patch + 1, uv: uv.map(|x| x as f32) });
     }
+}
+
+/// The samples of a rectangle.
+fn each([columns, rows]: [Range<u32>; 2]) -> impl Iterator<Item = [u32; 2]> {
+    rows.flat_map(move |y| columns.clone().map(move |x| [x, y]))
+}
+
+fn centre(sample: [u32; 2]) -> [f64; 2] {
+    sample.map(|k| f64::from(k) + 0.5)
 }
 
 /// Whether the tile may see anything of what is in a box.

@@ -63,6 +63,12 @@ impl Lens {
         DVec3::new(x.dot(v), y.dot(v), depth.dot(v))
     }
 
+    /// Whether one depth is less than another by more than f32 can tell, which keeps depths that differ by rounding alone from
+    /// being looked into.
+    pub fn is_nearer(&self, depth: f64, than: f64) -> bool {
+        than - depth > 1e-9 * (self.far.abs() + than.abs())
+    }
+
     /// What x and y of a point at this depth are multiplied by.
     pub fn weight(&self, depth: f64) -> f64 {
         if self.perspective { depth } else { 1.0 }

@@ -16,7 +16,7 @@
 //! those of the proxy. Here nothing depends on a proxy. Pieces are halved until they are charts, out of sight (hulls beyond the
 //! picture or between the centres of the samples), or cover at most a few samples, which are solved at once in f64: along silhouettes only pieces
 //! that hold the centre of a sample go on being halved, so they cost some work a sample and not a mesh finer than it. No patch
-//! is left to its neighbours by adjacency either: each chart answers for its own square, within 0.002 samples.
+//! is left to its neighbours by adjacency either: each chart answers for its own square, within 2e-4 samples.
 //!
 //! # Practice
 //! [`Charts::new`] cuts all patches for one tile of a picture, in parallel, in the order of the patches; the adapter draws every

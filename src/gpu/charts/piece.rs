@@ -1,9 +1,10 @@
 //! A rectangle of a patch as a projected Bezier net: bounds, halves, and how much its projection distorts.
 
-use super::bounds::{Seen, seen_net};
+use super::bounds::{Line, Seen, seen_net};
 use super::frame::{Flat, Frame};
 use super::lens::Lens;
 use super::net::{Net, Row, bezier_of_spline, combined, dot, greatest, halve, row};
+use super::solve::POINT;
 use glam::DVec3;
 
 /// A bicubic piece of the surface, projected.
@@ -65,6 +66,34 @@ impl Piece {
             }
         }
         greatest(&along_v) > greatest(&along_u)
+    }
+
+    /// Whether all control points lie on a line in space: what they control has no area, and no line of sight meets it.
+    pub fn has_no_area(&self) -> bool {
+        let point = |k: usize| DVec3::from_array([0, 1, 2].map(|c| self.net[c][k / 4][k % 4]));
+        let from = point(0);
+        let farthest = (1..16)
+            .map(|k| point(k) - from)
+            .fold(DVec3::ZERO, |far, d| if d.length_squared() > far.length_squared() { d } else { far });
+        // Relative to the length of the line; rounding is below it unless the eye is a million lengths away.
+        const ROUNDING: f64 = 1e-10;
+        let most = ROUNDING * farthest.length_squared();
+        (1..16).all(|k| (point(k) - from).cross(farthest).length() <= most)
+    }
+
+    /// The line that the piece is seen as, if its projected hull is nowhere wider than [`POINT`].
+    pub fn line(&self, lens: &Lens) -> Option<Line> {
+        let seen: [[f64; 2]; 16] = std::array::from_fn(|k| {
+            let [x, y, depth] = [0, 1, 2].map(|c| self.net[c][k / 4][k % 4]);
+            [x / lens.weight(depth), y / lens.weight(depth)]
+        });
+        let farthest = |[x, y]: [f64; 2]| {
+            let length = |p: [f64; 2]| (p[0] - x).abs() + (p[1] - y).abs();
+            seen.into_iter().fold([x, y], |far, p| if length(p) > length(far) { p } else { far })
+        };
+        let through = farthest(seen[0]);
+        let line = Line::new(through, farthest(through));
+        seen.into_iter().all(|p| line.distance(p) < 0.5 * POINT).then_some(line)
     }
 
     /// Leaves the lower half along u or v, returns the upper one.

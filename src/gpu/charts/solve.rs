@@ -35,8 +35,8 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    fn piece(&mut self, piece: &mut Piece, depth: u32) {
-        match piece.seen(self.lens) {
+    fn piece(&mut self, piece: &mut Piece, seen: Seen, depth: u32) {
+        match seen {
             Seen::No => (),
             Seen::Straddles if depth == DEEPEST => (),
             Seen::Straddles => self.halves(piece, None, depth),
@@ -45,7 +45,8 @@ impl Search<'_> {
     }
 
     fn within(&mut self, piece: &mut Piece, bounds: &Bounds, depth: u32) {
-        if !bounds.contains(self.p) || self.first.is_some_and(|first| first.depth <= bounds.near) {
+        let hidden = |first: Hit| !self.lens.is_nearer(bounds.near, first.depth);
+        if !bounds.contains(self.p) || self.first.is_some_and(hidden) {
             return;
         }
         if bounds.extent() < POINT || depth == DEEPEST {
@@ -63,16 +64,30 @@ impl Search<'_> {
         self.halves(piece, flat.as_ref(), depth);
     }
 
-    fn halves(&mut self, piece: &mut Piece, flat: Option<&Flat>, depth: u32) {
-        let mut upper = piece.split(piece.longer_along_v(self.lens, flat));
-        self.piece(&mut upper, depth + 1);
-        self.piece(piece, depth + 1);
+    /// The nearer half first: where a piece is seen edge on, all of it lies behind a hit at its near edge.
+    fn halves(&mut self, lower: &mut Piece, flat: Option<&Flat>, depth: u32) {
+        let mut upper = lower.split(lower.longer_along_v(self.lens, flat));
+        let seen = [lower.seen(self.lens), upper.seen(self.lens)];
+        if nearest(&seen[0]) < nearest(&seen[1]) {
+            self.piece(lower, seen[0], depth + 1);
+            self.piece(&mut upper, seen[1], depth + 1);
+        } else {
+            self.piece(&mut upper, seen[1], depth + 1);
+            self.piece(lower, seen[0], depth + 1);
+        }
     }
 
     fn keep(&mut self, hit: Hit) {
-        if self.first.is_none_or(|first| hit.depth < first.depth) {
+        if self.first.is_none_or(|first| hit.depth < first.depth) && hit.depth >= self.lens.near {
             self.first = Some(hit);
         }
+    }
+}
+
+fn nearest(seen: &Seen) -> f64 {
+    match seen {
+        Seen::Within(bounds) => bounds.near,
+        _ => f64::NEG_INFINITY,
     }
 }
 
@@ -106,7 +121,8 @@ pub(super) fn newton(lens: &Lens, piece: &Piece, chart: &ChartFrame, p: [f64; 2]
         };
         if length(uv, next) < SETTLED {
             let depth = jet.value[2] + (next[0] - uv[0]) * jet.du[2] + (next[1] - uv[1]) * jet.dv[2];
-            return (length(next, target) <= BAND).then(|| Hit { uv: piece.to_patch(next), depth });
+            return (length(next, target) <= BAND && depth >= lens.near)
+                .then(|| Hit { uv: piece.to_patch(next), depth });
         }
         uv = next;
     }

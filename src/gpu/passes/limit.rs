@@ -10,7 +10,7 @@ use wgpu::BindingResource::TextureView;
 pub fn pipeline<'a>(passes: &'a Passes, device: &Device, pipeline: Pipeline) -> &'a wgpu::RenderPipeline {
     let formats = [PACKED_FORMAT];
     match pipeline {
-        Pipeline::Exact | Pipeline::Limit => {
+        Pipeline::Exact | Pipeline::Limit | Pipeline::Points => {
             passes.limit.get_or_init(|| fullscreen(passes, device, &LIMIT, "limit", &formats, true))
         }
         Pipeline::Polygon => {
@@ -22,7 +22,9 @@ pub fn pipeline<'a>(passes: &'a Passes, device: &Device, pipeline: Pipeline) -> 
 fn pipeline_full<'a>(passes: &'a Passes, device: &Device, pipeline: Pipeline) -> &'a wgpu::RenderPipeline {
     let create = |module, entry| fullscreen(passes, device, module, entry, &[SURFACE_FORMAT; 3], true);
     match pipeline {
-        Pipeline::Exact | Pipeline::Limit => passes.limit_full.get_or_init(|| create(&LIMIT, "limit_full")),
+        Pipeline::Exact | Pipeline::Limit | Pipeline::Points => {
+            passes.limit_full.get_or_init(|| create(&LIMIT, "limit_full"))
+        }
         Pipeline::Polygon => passes.polygon_full.get_or_init(|| create(&POLYGON, "polygon_full")),
     }
 }

@@ -3,6 +3,8 @@
 pub mod charts;
 pub mod evaluate;
 pub mod limit;
+pub mod points;
+pub mod rectangle;
 pub mod resolve;
 pub mod shade;
 pub mod visibility;
@@ -26,6 +28,11 @@ pub struct Passes {
     charts: OnceLock<wgpu::RenderPipeline>,
     visibility: OnceLock<wgpu::RenderPipeline>,
     visibility_polygon: OnceLock<wgpu::RenderPipeline>,
+    visibility_plain: OnceLock<wgpu::RenderPipeline>,
+    rectangle: OnceLock<wgpu::ComputePipeline>,
+    position: OnceLock<wgpu::RenderPipeline>,
+    landed: OnceLock<wgpu::RenderPipeline>,
+    landed_full: OnceLock<wgpu::RenderPipeline>,
     limit: OnceLock<wgpu::RenderPipeline>,
     limit_full: OnceLock<wgpu::RenderPipeline>,
     polygon: OnceLock<wgpu::RenderPipeline>,
@@ -79,7 +86,10 @@ pub(super) struct Scene<'a> {
 
 impl<'a> Scene<'a> {
     pub fn new(device: &Device, tables: &'a Tables, view: &'a View) -> Result<Self, GpuError> {
-        let proxy = Proxy::new(&tables.cells, view.proxy_level_for(tables));
+        let proxy = match view.pipeline {
+            Pipeline::Exact => Proxy::default(),
+            _ => Proxy::new(&tables.cells, view.proxy_level_for(tables)),
+        };
         Ok(Scene {
             tables,
             view,

@@ -12,10 +12,10 @@ use wgpu::BufferUsages;
 
 /// The proxy tessellation on the adapter.
 pub struct ProxyBuffers {
-    vertices: wgpu::Buffer,
+    pub(super) vertices: wgpu::Buffer,
     indices: wgpu::Buffer,
-    order: wgpu::Buffer,
-    draws: Vec<(Draw, wgpu::Buffer)>,
+    pub(super) order: wgpu::Buffer,
+    pub(super) draws: Vec<(Draw, wgpu::Buffer)>,
 }
 
 impl ProxyBuffers {
@@ -25,7 +25,11 @@ impl ProxyBuffers {
             device.buffer("a draw", &[record], BufferUsages::UNIFORM)
         };
         Ok(ProxyBuffers {
-            vertices: device.buffer("the vertices of the proxy", &proxy.vertices, BufferUsages::VERTEX)?,
+            vertices: device.buffer(
+                "the vertices of the proxy",
+                &proxy.vertices,
+                BufferUsages::VERTEX | BufferUsages::STORAGE,
+            )?,
             indices: device.buffer("the triangles of the proxy", &proxy.indices, BufferUsages::INDEX)?,
             order: device.buffer("the order of the patches", &proxy.order, BufferUsages::STORAGE)?,
             draws: proxy.draws.iter().map(|draw| Ok((draw.clone(), record(draw)?))).collect::<Result<_, GpuError>>()?,
@@ -36,15 +40,23 @@ impl ProxyBuffers {
 pub fn pipeline<'a>(passes: &'a Passes, device: &Device, pipeline: Pipeline) -> &'a wgpu::RenderPipeline {
     match pipeline {
         Pipeline::Exact | Pipeline::Limit => {
-            passes.visibility.get_or_init(|| create(passes, device, "visible", &[PATCH_FORMAT, UV_FORMAT]))
+            passes.visibility.get_or_init(|| create(passes, device, ["vertex", "visible"], &[PATCH_FORMAT, UV_FORMAT]))
         }
+        Pipeline::Points => passes
+            .visibility_plain
+            .get_or_init(|| create(passes, device, ["vertex_plain", "visible"], &[PATCH_FORMAT, UV_FORMAT])),
         Pipeline::Polygon => passes.visibility_polygon.get_or_init(|| {
-            create(passes, device, "polygon", &[PATCH_FORMAT, UV_FORMAT, SURFACE_FORMAT, SURFACE_FORMAT])
+            create(passes, device, ["vertex", "polygon"], &[PATCH_FORMAT, UV_FORMAT, SURFACE_FORMAT, SURFACE_FORMAT])
         }),
     }
 }
 
-fn create(passes: &Passes, device: &Device, entry: &str, formats: &[wgpu::TextureFormat]) -> wgpu::RenderPipeline {
+fn create(
+    passes: &Passes,
+    device: &Device,
+    [vertex, fragment]: [&str; 2],
+    formats: &[wgpu::TextureFormat],
+) -> wgpu::RenderPipeline {
     let shader = passes.shader(device, &VISIBILITY);
     let targets: Vec<_> = formats.iter().map(|&format| Some(format.into())).collect();
     device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
@@ -52,7 +64,7 @@ fn create(passes: &Passes, device: &Device, entry: &str, formats: &[wgpu::Textur
         layout: None,
         vertex: wgpu::VertexState {
             module: &shader,
-            entry_point: Some("vertex"),
+            entry_point: Some(vertex),
             compilation_options: Default::default(),
             buffers: &[Some(wgpu::VertexBufferLayout {
                 array_stride: size_of::<ProxyVertex>() as u64,
@@ -73,7 +85,7 @@ fn create(passes: &Passes, device: &Device, entry: &str, formats: &[wgpu::Textur
         multisample: Default::default(),
         fragment: Some(wgpu::FragmentState {
             module: &shader,
-            entry_point: Some(entry),
+            entry_point: Some(fragment),
             compilation_options: Default::default(),
             targets: &targets,
         }),

@@ -1,0 +1,184 @@
+//! `shaders/points.wgsl`: exact positions of the proxy's fragments, and the fragments drawn as points.
+
+use super::{Colour, Passes, PictureTargets, Scene, Visible, bind, draw_fullscreen, fullscreen, target, whole};
+use super::{DEPTH_FORMAT, PACKED_FORMAT, PATCH_FORMAT, SAMPLE_FORMAT, SURFACE_FORMAT, UV_FORMAT};
+use crate::gpu::device::Device;
+use crate::gpu::view::Tile;
+use crate::gpu::{GpuError, shader::POINTS};
+use wgpu::BindingResource::TextureView;
+use wgpu::BufferUsages;
+
+pub fn position_pipeline<'a>(passes: &'a Passes, device: &Device) -> &'a wgpu::RenderPipeline {
+    passes.position.get_or_init(|| fullscreen(passes, device, &POINTS, "position", &[SURFACE_FORMAT], true))
+}
+
+pub fn pipeline<'a>(passes: &'a Passes, device: &Device) -> &'a wgpu::RenderPipeline {
+    passes.landed.get_or_init(|| create(passes, device, "landed", &[SAMPLE_FORMAT]))
+}
+
+fn pipeline_full<'a>(passes: &'a Passes, device: &Device) -> &'a wgpu::RenderPipeline {
+    passes.landed_full.get_or_init(|| create(passes, device, "landed_full", &[PATCH_FORMAT, UV_FORMAT]))
+}
+
+fn create(passes: &Passes, device: &Device, entry: &str, formats: &[wgpu::TextureFormat]) -> wgpu::RenderPipeline {
+    let shader = passes.shader(device, &POINTS);
+    let targets: Vec<_> = formats.iter().map(|&format| Some(format.into())).collect();
+    device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("points"),
+        layout: None,
+        vertex: wgpu::VertexState {
+            module: &shader,
+            entry_point: Some("point"),
+            compilation_options: Default::default(),
+            buffers: &[],
+        },
+        primitive: wgpu::PrimitiveState { topology: wgpu::PrimitiveTopology::PointList, ..Default::default() },
+        // As in the visibility pass: the greater is the nearer.
+        depth_stencil: Some(wgpu::DepthStencilState {
+            format: DEPTH_FORMAT,
+            depth_write_enabled: Some(true),
+            depth_compare: Some(wgpu::CompareFunction::Greater),
+            stencil: Default::default(),
+            bias: Default::default(),
+        }),
+        multisample: Default::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: &shader,
+            entry_point: Some(entry),
+            compilation_options: Default::default(),
+            targets: &targets,
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}
+
+/// Where the points land: the whole picture. Starts empty, as new textures are zero and so is the depth of nothing.
+pub struct Landing {
+    pub picture: PictureTargets,
+    depth: wgpu::Texture,
+}
+
+impl Landing {
+    pub fn new(device: &Device, tile: &Tile, colour: Colour) -> Landing {
+        let picture = PictureTargets {
+            // Colours arrive finished.
+            surface: target(device, [1, 1], PACKED_FORMAT),
+            samples: target(device, tile.size, SAMPLE_FORMAT),
+            colour: target(device, tile.pixels()[1], colour.format()),
+        };
+        Landing { picture, depth: target(device, tile.size, DEPTH_FORMAT) }
+    }
+}
+
+/// The exact position of every fragment in `visible`, relative to the origin of its patch.
+pub fn run_position(
+    device: &Device,
+    passes: &Passes,
+    scene: &Scene<'_>,
+    visible: &Visible,
+) -> Result<wgpu::Texture, GpuError> {
+    let pipeline = position_pipeline(passes, device);
+    let [records, points, scales, _] = scene.table_views();
+    let tables = [(0, TextureView(&records)), (1, TextureView(&points)), (2, TextureView(&scales))];
+    let [patch, uv] = [&visible.patch, &visible.uv].map(whole);
+    let groups = [
+        bind(device, pipeline.get_bind_group_layout(0), &tables),
+        bind(device, pipeline.get_bind_group_layout(1), &[(1, TextureView(&patch)), (2, TextureView(&uv))]),
+    ];
+    let size = [visible.patch.width(), visible.patch.height()];
+    let position = target(device, size, SURFACE_FORMAT);
+    draw_fullscreen(device, pipeline, &groups, &[&position], Some(&visible.depth))?;
+    Ok(position)
+}
+
+/// Fragments with their exact positions.
+pub struct Cloud<'a> {
+    pub visible: &'a Visible,
+    pub position: &'a wgpu::Texture,
+}
+
+/// Draws the fragments in the colours of `texels`; `tile` is the whole picture.
+pub fn run(
+    device: &Device,
+    passes: &Passes,
+    scene: &Scene<'_>,
+    cloud: &Cloud<'_>,
+    texels: &PictureTargets,
+    landing: &Landing,
+    tile: &Tile,
+) -> Result<(), GpuError> {
+    let targets = [&landing.picture.samples];
+    let transfer = Transfer { input: (4, &texels.samples), targets: &targets, depth: &landing.depth };
+    draw(device, pipeline(passes, device), scene, cloud, &transfer, tile)
+}
+
+/// Writes the patch and (u,v) of what lands on each sample; `tile` is the whole picture.
+pub fn run_full(
+    device: &Device,
+    passes: &Passes,
+    scene: &Scene<'_>,
+    cloud: &Cloud<'_>,
+    landed: &Visible,
+    tile: &Tile,
+) -> Result<(), GpuError> {
+    let targets = [&landed.patch, &landed.uv];
+    let transfer = Transfer { input: (2, &cloud.visible.uv), targets: &targets, depth: &landed.depth };
+    draw(device, pipeline_full(passes, device), scene, cloud, &transfer, tile)
+}
+
+/// What a fragment of a point reads, by binding, and writes.
+struct Transfer<'a> {
+    input: (u32, &'a wgpu::Texture),
+    targets: &'a [&'a wgpu::Texture],
+    depth: &'a wgpu::Texture,
+}
+
+fn draw(
+    device: &Device,
+    pipeline: &wgpu::RenderPipeline,
+    scene: &Scene<'_>,
+    cloud: &Cloud<'_>,
+    transfer: &Transfer<'_>,
+    tile: &Tile,
+) -> Result<(), GpuError> {
+    let Transfer { input, targets, depth } = *transfer;
+    let frame = device.buffer("the frame", &[scene.view.frame_record(scene.tables, tile)], BufferUsages::UNIFORM)?;
+    let [.., patch_views] = scene.table_views();
+    let inputs =
+        [(1, &cloud.visible.patch), (3, cloud.position), input].map(|(binding, texture)| (binding, whole(texture)));
+    let inputs = inputs.each_ref().map(|(binding, view)| (*binding, TextureView(view)));
+    let groups = [
+        bind(
+            device,
+            pipeline.get_bind_group_layout(0),
+            &[(3, TextureView(&patch_views)), (4, frame.as_entire_binding())],
+        ),
+        bind(device, pipeline.get_bind_group_layout(1), &inputs),
+    ];
+    // Points of every part of the rectangle land on the same picture.
+    let views: Vec<_> = targets.iter().map(|texture| whole(texture)).collect();
+    let keep = wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store };
+    let attachments: Vec<_> = views
+        .iter()
+        .map(|view| Some(wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops: keep }))
+        .collect();
+    let depth = whole(depth);
+    let mut encoder = device.encoder();
+    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        color_attachments: &attachments,
+        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+            view: &depth,
+            depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store }),
+            stencil_ops: None,
+        }),
+        ..Default::default()
+    });
+    pass.set_pipeline(pipeline);
+    for (index, group) in groups.iter().enumerate() {
+        pass.set_bind_group(index as u32, group, &[]);
+    }
+    pass.draw(0..cloud.position.width() * cloud.position.height(), 0..1);
+    drop(pass);
+    device.submit(encoder)
+}
