@@ -6,7 +6,7 @@ struct Found {
     // Patch + 1: 0 is the background.
     @location(0) patch_id: u32,
     @location(1) uv: vec2f,
-    // Bits 0 to 15: distance in samples between the point and the sample's ray, as the upper half of an f32, rounded up. Then 8 bits: steps. Then: state.
+    // Bits 0 to 15: distance in samples between the point and the sample's ray (residual_bits); 16 to 23: steps; then: state.
     @location(2) certificate: u32,
     @builtin(frag_depth) depth: f32,
 }
@@ -73,5 +73,5 @@ fn visible(c: Corner) -> Found {
         discard;
     }
     let state = select(STATE_DOUBTFUL, STATE_CHART, converged);
-    return Found(c.id.x, uv, ((bitcast<u32>(residual) + 0xffffu) >> 16u) | (steps << 16u) | (state << 24u), depth);
+    return Found(c.id.x, uv, residual_bits(residual) | (steps << 16u) | (state << 24u), depth);
 }

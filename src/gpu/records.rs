@@ -56,7 +56,7 @@ pub struct ChartRecord {
     pub net: [[[f32; 4]; 3]; 4],
 }
 
-/// A sample solved on the host, as vertex attributes 0 to 2 of shaders/specks.wgsl.
+/// A sample solved on the host, as vertex attributes 0 to 3 of shaders/specks.wgsl.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable, PartialEq)]
 pub struct SpeckRecord {
@@ -66,6 +66,8 @@ pub struct SpeckRecord {
     pub patch_id: u32,
     /// Patch-local parameters.
     pub uv: [f32; 2],
+    /// Samples between the point and the sample's ray.
+    pub residual: f32,
 }
 
 /// `Lens`, shaders/charts.wgsl.

@@ -69,6 +69,12 @@ impl Lens {
         than - depth > 1e-9 * (self.far.abs() + than.abs())
     }
 
+    /// Where in the picture a projected point is seen, in samples.
+    pub fn seen(&self, [x, y, depth]: [f64; 3]) -> [f64; 2] {
+        let weight = self.weight(depth);
+        [x / weight, y / weight]
+    }
+
     /// What x and y of a point at this depth are multiplied by.
     pub fn weight(&self, depth: f64) -> f64 {
         if self.perspective { depth } else { 1.0 }

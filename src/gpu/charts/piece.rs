@@ -153,6 +153,11 @@ impl Piece {
         jet
     }
 
+    /// The piece's own parameters at those of the patch.
+    pub fn to_own(&self, [u, v]: [f64; 2]) -> [f64; 2] {
+        [(u - self.origin[0]) / self.size[0], (v - self.origin[1]) / self.size[1]]
+    }
+
     /// Parameters of the patch at the piece's own.
     pub fn to_patch(&self, [u, v]: [f64; 2]) -> [f64; 2] {
         [self.origin[0] + u * self.size[0], self.origin[1] + v * self.size[1]]
