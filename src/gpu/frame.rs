@@ -1,7 +1,7 @@
 //! Runs the passes in order and reads the results back.
 
 use super::certificate::{Certificate, Summary};
-use super::charts::Charts;
+use super::charts::Cutter;
 use super::device::Device;
 use super::passes::{self, Colour, Passes, PictureTargets, Scene, SurfaceTargets, Visible};
 use super::view::{Tile, View};
@@ -231,8 +231,15 @@ fn see(
     if scene.view.pipeline != Pipeline::Exact {
         return timings.time("visibility", || passes::visibility::run(device, passes, scene, visible, tile));
     }
-    let charts = timings.time("charts", || Charts::new(scene.tables, scene.view, tile));
-    timings.time("visibility", || passes::charts::run(device, passes, &charts, visible))
+    let cutter = timings.time("charts", || Cutter::new(scene.tables, scene.view, tile));
+    let charts = timings.time("charts", || cutter.first());
+    timings.time("visibility", || passes::charts::run(device, passes, &charts, visible))?;
+    if cutter.has_rest() {
+        let depths: Vec<f32> = timings.time("visibility", || device.read_texture(&visible.depth))?;
+        let charts = timings.time("charts", || cutter.rest(&depths));
+        timings.time("visibility", || passes::charts::run(device, passes, &charts, visible))?;
+    }
+    Ok(())
 }
 
 fn limit_step(view: &View) -> &'static str {

@@ -2,6 +2,7 @@
 
 use super::BAND;
 use super::bounds::{Bounds, Line, Seen, seen};
+use super::cover::Cover;
 use super::frame::{ChartFrame, Flat};
 use super::lens::Lens;
 use super::piece::Piece;
@@ -33,12 +34,13 @@ pub(super) struct Divider<'a> {
     /// Parts that every face is cut into at least, as a level.
     level: u8,
     patch: u32,
+    cover: Option<&'a Cover>,
     pub out: Harvest,
 }
 
 impl<'a> Divider<'a> {
-    pub fn new(lens: &'a Lens, level: u8) -> Self {
-        Self { lens, level, patch: 0, out: Harvest::default() }
+    pub fn new(lens: &'a Lens, level: u8, cover: Option<&'a Cover>) -> Self {
+        Self { lens, level, patch: 0, cover, out: Harvest::default() }
     }
 
     /// A patch of refinement levels `levels` along u and v.
@@ -63,8 +65,8 @@ impl<'a> Divider<'a> {
                 Seen::Straddles if rings.level() > DEEPEST => return,
                 Seen::Straddles => (),
                 Seen::Within(bounds) => {
-                    let [columns, rows] = bounds.samples(self.lens);
-                    if columns.is_empty() || rows.is_empty() {
+                    let samples = bounds.samples(self.lens);
+                    if samples.iter().any(|range| range.is_empty()) || self.hides(&bounds, &samples) {
                         return;
                     }
                     if bounds.extent() < POINT {
@@ -73,7 +75,7 @@ impl<'a> Divider<'a> {
                             return;
                         }
                         let seen = self.lens.seen(limit.to_array());
-                        self.push_speck([columns.start, rows.start], bounds.near, [0.0; 2], seen);
+                        self.push_speck(samples.map(|range| range.start), bounds.near, [0.0; 2], seen);
                         return;
                     }
                 }
@@ -104,7 +106,7 @@ impl<'a> Divider<'a> {
     fn within(&mut self, piece: &mut Piece, bounds: &Bounds) {
         let samples = bounds.samples(self.lens);
         let count = samples[0].len() * samples[1].len();
-        if count == 0 {
+        if count == 0 || self.hides(bounds, &samples) {
             return;
         }
         let is_small = count <= FEW || piece.owed == [0; 2] && bounds.extent() <= LARGEST;
@@ -126,6 +128,10 @@ impl<'a> Divider<'a> {
             return self.solve_line(piece, line, samples);
         }
         self.halves(piece, piece.longer_along_v(self.lens, flat.as_ref()));
+    }
+
+    fn hides(&self, bounds: &Bounds, samples: &[Range<u32>; 2]) -> bool {
+        self.cover.is_some_and(|cover| cover.hides(bounds, samples))
     }
 
     fn halves(&mut self, piece: &mut Piece, longer_along_v: bool) {

@@ -99,6 +99,18 @@ impl Lens {
         [x as f32, -y as f32, shown as f32]
     }
 
+    /// A depth beyond all those that the depth buffer shows as `shown`, whatever f32 rounded; infinite for the background.
+    pub fn farthest(&self, shown: f32) -> f64 {
+        // Over a dozen roundings: of the near and the far distance, the depth, and their quotient or difference.
+        const ROUNDING: f64 = 1e-6;
+        let shown = f64::from(shown);
+        match self.perspective {
+            _ if shown <= 0.0 => f64::INFINITY,
+            true => self.near / shown * (1.0 + ROUNDING),
+            false => self.far - shown / self.scale() + ROUNDING * (self.near.abs() + self.far.abs()),
+        }
+    }
+
     fn scale(&self) -> f64 {
         1.0 / (self.far - self.near)
     }

@@ -19,11 +19,15 @@
 //! is left to its neighbours by adjacency either: each chart answers for its own square, within 2e-4 samples.
 //!
 //! # Practice
-//! [`Charts::new`] cuts all patches for one tile of a picture, in parallel, in the order of the patches; the adapter draws every
+//! [`Cutter`] cuts all patches for one tile of a picture, in parallel, in the order of the patches; the adapter draws every
 //! chart as the parallelogram that must hold it, with Newton's method in each fragment (`shaders/charts.wgsl`) and depth from the
 //! point that was found, and what was solved here as points ([`SpeckRecord`]); the depth buffer keeps what is seen first.
+//!
+//! Many patches are cut in two rounds: the nearer half, then the rest but for all that lies beyond what the depth buffer shows
+//! of the first ([`Cover`]). That is no approximation: those pieces would have lost every depth test.
 
 mod bounds;
+mod cover;
 mod divide;
 mod frame;
 mod lens;
@@ -35,6 +39,7 @@ use super::View;
 use super::records::{ChartRecord, LensRecord, SpeckRecord};
 use super::tables::Tables;
 use super::view::Tile;
+use cover::Cover;
 use divide::{Divider, Harvest};
 use lens::Lens;
 use rayon::prelude::*;
@@ -46,27 +51,63 @@ pub(super) const BAND: f64 = 2e-4;
 /// q up to which a piece is a chart: Newton's error shrinks to a half at least each step, in practice quadratically.
 const MAX_DISTORTION: f64 = 0.3;
 
-/// Everything that the samples of a tile may see.
+/// What the samples of a tile may see.
 #[derive(Debug)]
 pub(super) struct Charts {
     pub charts: Vec<ChartRecord>,
     pub specks: Vec<SpeckRecord>,
     pub lens: LensRecord,
+    /// Whether they are drawn over others.
+    pub is_rest: bool,
 }
 
-impl Charts {
-    /// Cuts all patches as `tile` of the picture sees them.
-    pub fn new(tables: &Tables, view: &View, tile: &Tile) -> Charts {
+/// Cuts patches as a tile of a picture sees them: all at once or, where they are many, the nearer half first and then what that
+/// does not hide.
+#[derive(Debug)]
+pub(super) struct Cutter<'a> {
+    tables: &'a Tables,
+    lens: Lens,
+    /// Parts that every face is cut into at least, as a level.
+    level: u8,
+    /// Which patches come first; all of them if `None`.
+    in_front: Option<Vec<bool>>,
+}
+
+impl<'a> Cutter<'a> {
+    pub fn new(tables: &'a Tables, view: &View, tile: &Tile) -> Cutter<'a> {
+        /// Patches from which on two rounds pay: to look at the depth buffer between them takes some milliseconds.
+        const MANY: usize = 8192;
+        let lens = Lens::new(view, tile, tables.bounds());
+        let in_front = (tables.patches() >= MANY).then(|| cover::in_front(&lens, &tables.origins));
+        Cutter { tables, lens, level: view.proxy_level.unwrap_or(0) as u8, in_front }
+    }
+
+    /// The charts that come first.
+    pub fn first(&self) -> Charts {
+        self.cut(None, |patch| self.in_front.as_ref().is_none_or(|in_front| in_front[patch]))
+    }
+
+    /// Whether that leaves patches over.
+    pub fn has_rest(&self) -> bool {
+        self.in_front.is_some()
+    }
+
+    /// The other charts, but for what is hidden by those that the depth buffer shows.
+    pub fn rest(&self, depths: &[f32]) -> Charts {
+        let cover = Cover::new(&self.lens, depths);
+        self.cut(Some(&cover), |patch| self.in_front.as_ref().is_some_and(|in_front| !in_front[patch]))
+    }
+
+    fn cut(&self, cover: Option<&Cover>, is_meant: impl Fn(usize) -> bool + Sync) -> Charts {
         /// Patches a job.
         const JOB: usize = 64;
-        let lens = Lens::new(view, tile, tables.bounds());
-        let level = view.proxy_level.unwrap_or(0) as u8;
-        let count = if divide::sees_box(&lens, tables.bounds()) { tables.patches() } else { 0 };
+        let Cutter { tables, lens, level, .. } = self;
+        let count = if divide::sees_box(lens, tables.bounds()) { tables.patches() } else { 0 };
         let harvests: Vec<Harvest> = (0..count.div_ceil(JOB))
             .into_par_iter()
             .map(|job| {
-                let mut divider = Divider::new(&lens, level);
-                for patch in job * JOB..((job + 1) * JOB).min(count) {
+                let mut divider = Divider::new(lens, *level, cover);
+                for patch in (job * JOB..((job + 1) * JOB).min(count)).filter(|&patch| is_meant(patch)) {
                     divider.patch(patch as u32, tables.cells[patch].0, tables.source.nets(patch));
                 }
                 divider.out
@@ -77,6 +118,6 @@ impl Charts {
             charts.extend(harvest.charts);
             specks.extend(harvest.specks);
         }
-        Charts { charts, specks, lens: lens.record() }
+        Charts { charts, specks, lens: lens.record(), is_rest: cover.is_some() }
     }
 }

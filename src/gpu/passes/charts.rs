@@ -84,14 +84,19 @@ pub fn run(device: &Device, passes: &Passes, charts: &Charts, visible: &Visible)
     let indices = device.buffer("the corners of the charts", &corners, BufferUsages::INDEX)?;
     let points = device.buffer("the samples solved", &charts.specks, BufferUsages::VERTEX)?;
     let targets = [&visible.patch, &visible.uv, certificate].map(whole);
-    let attachments = targets.each_ref().map(cleared);
+    let mut attachments = targets.each_ref().map(cleared);
+    let mut load_depth = wgpu::LoadOp::Clear(0.0);
+    if charts.is_rest {
+        attachments.iter_mut().flatten().for_each(|target| target.ops.load = wgpu::LoadOp::Load);
+        load_depth = wgpu::LoadOp::Load;
+    }
     let depth = whole(&visible.depth);
     let mut encoder = device.encoder();
     let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         color_attachments: &attachments,
         depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
             view: &depth,
-            depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store }),
+            depth_ops: Some(wgpu::Operations { load: load_depth, store: wgpu::StoreOp::Store }),
             stencil_ops: None,
         }),
         ..Default::default()

@@ -118,7 +118,7 @@ pub(super) struct Visible {
     pub patch: wgpu::Texture,
     pub uv: wgpu::Texture,
     /// Above 0 where there is surface: the mask of the passes that follow.
-    depth: wgpu::Texture,
+    pub depth: wgpu::Texture,
     /// How the exact pipeline came to each point.
     pub certificate: Option<wgpu::Texture>,
     /// Position and normal of the proxy, for the polygon pipeline.
