@@ -56,7 +56,7 @@ impl Certificate {
             state,
             steps: (bits >> 16 & 255) as u8,
             residual: f32::from_bits(bits << 16),
-            doubtful: bits >> 24 & STATE_DOUBTFUL != 0,
+            doubtful: bits >> 24 & STATE_DOUBTFUL != 0 || !f32::from_bits(bits << 16).is_finite(),
         }
     }
 }

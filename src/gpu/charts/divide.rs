@@ -142,13 +142,14 @@ impl<'a> Divider<'a> {
     }
 
     fn chart(&mut self, piece: &Piece, ChartFrame { frame, half }: &ChartFrame) {
-        let [x, y, depth] = [frame.centre[0], frame.centre[1], frame.depth].map(|x| (x as f32).to_bits());
+        let before_far = self.lens.before_far(frame.depth);
+        let [x, y, depth] = [frame.centre[0], frame.centre[1], before_far].map(|x| (x as f32).to_bits());
         let row = |values: [f64; 4]| values.map(|x| x as f32);
         let [[a, b], [c, d]] = frame.inverse;
         self.out.charts.push(ChartRecord {
             id: [self.patch + 1, x, y, depth],
             inverse: row([a, b, c, d]),
-            start: row([frame.start[0], frame.start[1], *half, 0.0]),
+            start: row([frame.start[0], frame.start[1], half[0], half[1]]),
             place: row([piece.origin[0], piece.origin[1], piece.size[0], piece.size[1]]),
             net: piece.relative_to(self.lens, frame),
         });
