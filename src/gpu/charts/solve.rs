@@ -16,7 +16,7 @@ pub(super) struct Hit {
 
 /// Halvings after which a piece is a point, whatever its bounds say.
 const DEEPEST: u32 = 96;
-/// Samples that a piece may span and be a point: a fifth of the 0.01 pixel within which silhouettes are to be right.
+/// Samples that a piece may span and be a point: a fiftieth of the 0.01 pixel within which silhouettes are to be right.
 pub(super) const POINT: f64 = 2e-4;
 
 /// The first point of a piece that the sample at `p` sees, by halving down to charts. Within [`BAND`] of the piece's border,
