@@ -344,7 +344,7 @@ fn pictures_have_their_size_and_repeat_bit_by_bit() {
 #[test]
 fn certificates_are_told() {
     let folder = Folder::new();
-    let output = folder.run(&["render", "-o", "a.png", "--size", "64x48", "--json", "a.json", "--show", "residual"]);
+    let output = folder.run(["render", "-o", "a.png", "--size", "64x48", "--json", "a.json", "--show", "residual"]);
     let message = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(output.status.success(), "{message}");
     assert!(message.starts_with("exact: ") && message.ends_with("0 not converged\n"), "{message}");
