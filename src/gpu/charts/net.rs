@@ -92,16 +92,26 @@ pub(super) fn halve(net: &mut Net, along_v: bool) -> Net {
     transposed(&high)
 }
 
-/// The largest distance between `mean` and the difference of neighbours across the rows.
+/// How much the derivatives of a Bezier net may change from one side of it to the other: a bound on its second derivatives, which
+/// are convex combinations of second differences.
 #[inline(always)]
-pub(super) fn unevenness(net: &Net, mean: f64) -> f64 {
-    let mut most = [0.0; 4];
+pub(super) fn bend(net: &Net) -> f64 {
+    let [a, b, c, d] = net;
+    let [mut along_u, mut along_v, mut twist] = [[0.0f64; 4]; 3];
+    for row in net {
+        along_u[0] = max(along_u[0], (row[0] - 2.0 * row[1] + row[2]).abs());
+        along_u[1] = max(along_u[1], (row[1] - 2.0 * row[2] + row[3]).abs());
+    }
+    for k in 0..4 {
+        along_v[k] = max((a[k] - 2.0 * b[k] + c[k]).abs(), (b[k] - 2.0 * c[k] + d[k]).abs());
+    }
     for j in 0..3 {
-        for k in 0..4 {
-            most[k] = max(most[k], (net[j + 1][k] - net[j][k] - mean).abs());
+        let step = row(|k| net[j + 1][k] - net[j][k]);
+        for k in 0..3 {
+            twist[k] = max(twist[k], (step[k + 1] - step[k]).abs());
         }
     }
-    greatest(&most)
+    6.0 * (greatest(&along_u) + greatest(&along_v)) + 18.0 * greatest(&twist)
 }
 
 #[inline(always)]
