@@ -115,11 +115,8 @@ impl<'a> Cutter<'a> {
                 divider.out
             })
             .collect();
-        let (mut charts, mut specks) = (Vec::new(), Vec::new());
-        for harvest in harvests {
-            charts.extend(harvest.charts);
-            specks.extend(harvest.specks);
-        }
-        Charts { charts, specks, lens: lens.record(), is_rest: cover.is_some() }
+        let charts: Vec<&[ChartRecord]> = harvests.iter().map(|harvest| harvest.charts.as_slice()).collect();
+        let specks: Vec<&[SpeckRecord]> = harvests.iter().map(|harvest| harvest.specks.as_slice()).collect();
+        Charts { charts: charts.concat(), specks: specks.concat(), lens: lens.record(), is_rest: cover.is_some() }
     }
 }

@@ -96,19 +96,21 @@ pub(super) fn halve(net: &mut Net, along_v: bool) -> Net {
 /// are convex combinations of second differences.
 #[inline(always)]
 pub(super) fn bend(net: &Net) -> f64 {
-    let [a, b, c, d] = net;
+    let steps = net.each_ref().map(|row| [row[1] - row[0], row[2] - row[1], row[3] - row[2]]);
     let [mut along_u, mut along_v, mut twist] = [[0.0f64; 4]; 3];
-    for row in net {
-        along_u[0] = max(along_u[0], (row[0] - 2.0 * row[1] + row[2]).abs());
-        along_u[1] = max(along_u[1], (row[1] - 2.0 * row[2] + row[3]).abs());
+    for step in &steps {
+        for k in 0..2 {
+            along_u[k] = max(along_u[k], (step[k + 1] - step[k]).abs());
+        }
     }
-    for k in 0..4 {
-        along_v[k] = max((a[k] - 2.0 * b[k] + c[k]).abs(), (b[k] - 2.0 * c[k] + d[k]).abs());
+    for j in 0..2 {
+        for k in 0..4 {
+            along_v[k] = max(along_v[k], ((net[j + 2][k] - net[j + 1][k]) - (net[j + 1][k] - net[j][k])).abs());
+        }
     }
     for j in 0..3 {
-        let step = row(|k| net[j + 1][k] - net[j][k]);
         for k in 0..3 {
-            twist[k] = max(twist[k], (step[k + 1] - step[k]).abs());
+            twist[k] = max(twist[k], (steps[j + 1][k] - steps[j][k]).abs());
         }
     }
     6.0 * (greatest(&along_u) + greatest(&along_v)) + 18.0 * greatest(&twist)
