@@ -6,7 +6,7 @@ struct Found {
     // Patch + 1: 0 is the background.
     @location(0) patch_id: u32,
     @location(1) uv: vec2f,
-    // Bits 0 to 15: distance in samples between the point and the sample's ray, as the upper half of an f32, rounded up. Then 8 bits: steps. Then: state.
+    // Bits 0 to 15: distance in samples between the point and the sample's ray (residual_bits); 16 to 23: steps; then: state.
     @location(2) certificate: u32,
     @builtin(frag_depth) depth: f32,
 }
@@ -29,6 +29,8 @@ fn visible(c: Corner) -> Found {
     var steps = 0u;
     var moved = 0.0;
     var beyond = 0.0;
+    var a = vec2f(0.0);
+    var b = vec2f(0.0);
     loop {
         let bu = bernstein(t.x);
         let bv = bernstein(t.y);
@@ -40,11 +42,11 @@ fn visible(c: Corner) -> Found {
         let ly = vec4f(dot(c.y0, bu), dot(c.y1, bu), dot(c.y2, bu), dot(c.y3, bu));
         let lz = vec4f(dot(c.z0, bu), dot(c.z1, bu), dot(c.z2, bu), dot(c.z3, bu));
         let g = vec2f(dot(lx, bv), dot(ly, bv)) - d - w * dot(lz, bv);
-        let b = vec2f(dot(lx, cv), dot(ly, cv)) - w * dot(lz, cv);
+        b = vec2f(dot(lx, cv), dot(ly, cv)) - w * dot(lz, cv);
         let sx = vec4f(dot(c.x0, cu), dot(c.x1, cu), dot(c.x2, cu), dot(c.x3, cu));
         let sy = vec4f(dot(c.y0, cu), dot(c.y1, cu), dot(c.y2, cu), dot(c.y3, cu));
         let sz = vec4f(dot(c.z0, cu), dot(c.z1, cu), dot(c.z2, cu), dot(c.z3, cu));
-        let a = vec2f(dot(sx, bv), dot(sy, bv)) - w * dot(sz, bv);
+        a = vec2f(dot(sx, bv), dot(sy, bv)) - w * dot(sz, bv);
         let goal = t + vec2f(g.y * b.x - g.x * b.y, g.x * a.y - g.y * a.x) / (a.x * b.y - a.y * b.x);
         let next = clamp(goal, vec2f(0.0), vec2f(1.0));
         moved = length(a * (next.x - t.x) + b * (next.y - t.y));
@@ -55,23 +57,23 @@ fn visible(c: Corner) -> Found {
             break;
         }
     }
-    // What the sample sees of the point at the (u,v) that is handed on, with its rounding.
     let uv = c.place.xy + c.place.zw * t;
-    let r = (uv - c.place.xy) / c.place.zw;
-    let bu = bernstein(r.x);
-    let bv = bernstein(r.y);
+    let bu = bernstein(t.x);
+    let bv = bernstein(t.y);
     let x = dot(vec4f(dot(c.x0, bu), dot(c.x1, bu), dot(c.x2, bu), dot(c.x3, bu)), bv);
     let y = dot(vec4f(dot(c.y0, bu), dot(c.y1, bu), dot(c.y2, bu), dot(c.y3, bu)), bv);
     let z = dot(vec4f(dot(c.z0, bu), dot(c.z1, bu), dot(c.z2, bu), dot(c.z3, bu)), bv);
     let weight = 1.0 + z * lens.perspective;
-    let residual = length(vec2f(x, y) - d * weight) / weight;
-    let middle = bitcast<f32>(c.id.w);
-    let depth = select((lens.far - middle - z) * lens.scale, lens.near / (middle + middle * z), lens.perspective > 0.0);
+    // What the sample sees of the point, and what rounding moves it by where (u,v) are handed on: a bound, for compilers undo
+    // the rounding of sums that they see through.
+    let rounding = (length(a) * uv.x / c.place.z + length(b) * uv.y / c.place.w) * 5.9604645e-8;
+    let residual = (length(vec2f(x, y) - d * weight) + rounding) / weight;
+    let depth = lens.scale * (bitcast<f32>(c.id.w) - z) / weight;
     let converged = moved < SETTLED;
     // Greater than 1: before the near plane of an orthographic view.
     if depth > 1.0 || converged && beyond > BAND * weight {
         discard;
     }
     let state = select(STATE_DOUBTFUL, STATE_CHART, converged);
-    return Found(c.id.x, uv, ((bitcast<u32>(residual) + 0xffffu) >> 16u) | (steps << 16u) | (state << 24u), depth);
+    return Found(c.id.x, uv, residual_bits(residual) | (steps << 16u) | (state << 24u), depth);
 }

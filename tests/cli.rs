@@ -98,6 +98,14 @@ fn bad_usage_is_refused() {
         (&["render", "--size", "99999x10"], "WIDTHxHEIGHT"),
         (&["render", "--fov", "180"], "field of view"),
         (&["render", "--fov", "0"], "field of view"),
+        (&["render", "--projection", "orthographic", "--height", "1e-30"], "a pixel would span"),
+        (&["render", "--projection", "orthographic", "--height", "-1"], "above 0"),
+        (&["render", "--show", "magic"], "magic"),
+        (&["render", "--show", "steps", "-o", "a.exr"], "--show colours a .png"),
+        (&["render", "--stage", "vertex"], "vertex"),
+        (&["render", "-o", "a.png", "--json", "a.png"], "--json would overwrite the picture"),
+        (&["render", "--json", "no-such-folder/a.json"], "no-such-folder"),
+        (&["render", "--frames", "2", "--orbit", "1e300"], "at most 1e6"),
         (&["render", "--fov", "nan"], "field of view"),
         (&["render", "--projection", "isometric"], "isometric"),
         (&["render", "--projection", "orthographic", "--fov", "30"], "--fov does not apply"),
@@ -330,4 +338,22 @@ fn pictures_have_their_size_and_repeat_bit_by_bit() {
         let picture = image::load_from_memory(&first).expect("a PNG");
         assert_eq!((picture.width(), picture.height()), (96, 64));
     }
+}
+
+/// The certificates on standard error and in JSON, and as colours.
+#[test]
+fn certificates_are_told() {
+    let folder = Folder::new();
+    let output = folder.run(["render", "-o", "a.png", "--size", "64x48", "--json", "a.json", "--show", "residual"]);
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{message}");
+    assert!(message.starts_with("exact: ") && message.ends_with("0 not converged\n"), "{message}");
+    let json = std::fs::read(folder.path("a.json")).expect("it was written");
+    let json: serde_json::Value = serde_json::from_slice(&json).expect("it is JSON");
+    let certificate = &json["certificate"];
+    assert_eq!(certificate["samples"], 64 * 48);
+    assert_eq!(certificate["unconverged"], 0);
+    let residual = certificate["residual_max_pixels"].as_f64().expect("a number");
+    assert!(residual > 0.0 && residual < 1e-3, "{residual}");
+    assert_eq!(image::open(folder.path("a.png")).expect("a picture").to_rgb8().dimensions(), (64, 48));
 }

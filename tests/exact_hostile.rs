@@ -5,7 +5,7 @@ mod gpu_support;
 
 use catoptric::field::{Camera, Light, Projection};
 use catoptric::gpu::{NO_PATCH, SurfaceImage, View};
-use catoptric::mesh::SubdivMesh;
+use catoptric::mesh::{Crease, SubdivMesh};
 use catoptric::stam::LimitSurface;
 use glam::{DVec3, dvec3};
 use gpu_support::{gpu, meshes};
@@ -109,4 +109,62 @@ fn degenerate_shapes_end() {
         }
     }
     assert!(looks > 400, "{looks}");
+}
+
+/// A flat grid of unit faces at height z, `side` a side, creased along all its rows.
+fn grid(side: u32, z: f64, sharpness: f32) -> SubdivMesh {
+    let at = |i: u32, j: u32| j * (side + 1) + i;
+    let cells = || (0..side).flat_map(|j| (0..side).map(move |i| (i, j)));
+    SubdivMesh {
+        name: format!("grid, sharpness {sharpness}"),
+        points: (0..=side).flat_map(|j| (0..=side).map(move |i| dvec3(f64::from(i), f64::from(j), z))).collect(),
+        face_sizes: vec![4; (side * side) as usize],
+        face_vertices: cells().flat_map(|(i, j)| [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]).collect(),
+        creases: cells()
+            .filter(|_| sharpness > 0.0)
+            .map(|(i, j)| Crease { vertices: [at(i, j), at(i + 1, j)], sharpness })
+            .collect(),
+        ..SubdivMesh::default()
+    }
+}
+
+/// Strips along creases are thinner than the grid that rasterisers move corners to; pixels must not fall in between.
+#[test]
+fn thin_strips_have_no_holes() {
+    for sharpness in [2.5, 5.5, 9.5] {
+        let surface = surface(&grid(30, 0.0, sharpness)).expect("it has patches");
+        let target = dvec3(15.0, 15.0, 0.0);
+        for (roll, height) in [(0.3, 10.0), (0.5, 12.0), (1.0, 7.0), (0.02, 11.0)] {
+            let projection = Projection::Orthographic { height };
+            let size = [400, 400];
+            let camera = Camera { eye: target + 20.0 * DVec3::Z, target, up: dvec3(roll, 1.0, 0.0), projection, size };
+            let covered = look(&surface, "strips", camera);
+            assert_eq!(covered, 160_000, "sharpness {sharpness}, roll {roll}");
+        }
+    }
+}
+
+/// However far the eye, the nearer of two layers is seen.
+#[test]
+fn far_eyes_see_the_nearer_layer() {
+    let [mut both, above] = [grid(4, 0.0, 0.0), grid(4, 0.01, 0.0)];
+    let count = both.points.len() as u32;
+    both.points.extend(above.points);
+    both.face_sizes.extend(above.face_sizes);
+    both.face_vertices.extend(above.face_vertices.iter().map(|v| v + count));
+    let surface = surface(&both).expect("it has patches");
+    let tables = gpu().upload(&surface).expect("it fits");
+    let target = dvec3(2.0, 2.0, 0.0);
+    for distance in [10.0, 1e3, 1e5, 1e7] {
+        let eye = target + distance * DVec3::Z;
+        let fov = 2.0 * (1.0f64 / distance).atan().to_degrees();
+        for projection in [Projection::Orthographic { height: 2.0 }, Projection::Perspective { fov }] {
+            let camera = Camera { eye, target, up: DVec3::Y, projection, size: SIZE };
+            let light = Light::new(eye, DVec3::NEG_Z, DVec3::X, 1.0);
+            let view = View { samples: 1, ..View::new(camera, light) };
+            let image = gpu().inspect(&tables, &view).expect("the adapter works");
+            let nearer = image.position.iter().filter(|p| (p.z - 0.01).abs() < 1e-5).count();
+            assert_eq!(nearer, image.patch.len(), "{projection:?} from {distance}");
+        }
+    }
 }

@@ -77,6 +77,6 @@ fn structs_have_the_same_layout_on_both_sides() {
             padding4
         }
     );
-    same_layout!("Lens", LensRecord { size, perspective, near, far, scale, padding });
+    same_layout!("Lens", LensRecord { size, perspective, scale });
     same_layout!("Resolve", ResolveRecord { top, samples, bottom, row, rows });
 }

@@ -20,7 +20,7 @@ pub(super) struct Account {
 #[derive(Serialize)]
 struct Record<'a> {
     version: u32,
-    adapter: &'a str,
+    adapter: Option<&'a str>,
     pictures: usize,
     /// Samples a pixel each way.
     samples_per_pixel: u32,
@@ -101,8 +101,9 @@ impl Account {
         }
     }
 
-    /// All of it, as JSON.
-    pub fn write(&self, path: &PathBuf, adapter: &str, samples_per_pixel: u32) -> Result<(), Failure> {
+    /// All of it, as JSON, if a file for it is named. No adapter: nothing was left to draw.
+    pub fn write(&self, path: Option<&PathBuf>, adapter: Option<&str>, samples_per_pixel: u32) -> Result<(), Failure> {
+        let Some(path) = path else { return Ok(()) };
         let record = Record {
             version: 1,
             adapter,

@@ -9,6 +9,8 @@ use std::path::{Path, PathBuf};
 
 /// Most frames of a series: more than an hour at 25 a second.
 const MOST_FRAMES: i64 = 100_000;
+/// Most degrees or periods of a series: its frames would be whole turns apart otherwise, and digits run out.
+const MOST_WAY: f64 = 1e6;
 /// Least digits of a frame's number in a file name.
 const DIGITS: usize = 4;
 /// Most digits of a frame's number: file names end at some 255 bytes.
@@ -33,7 +35,10 @@ pub(super) struct FramesArgs {
 }
 
 fn way(text: &str) -> Result<f64, String> {
-    text.parse().ok().filter(|x: &f64| x.is_finite() && *x != 0.0).ok_or("give a number other than 0".to_owned())
+    let way = text.parse().ok().filter(|x: &f64| x.abs() <= MOST_WAY && *x != 0.0);
+    way.ok_or_else(|| {
+        format!("give a number other than 0, at most {MOST_WAY:e} either way; a mesh comes before this flag")
+    })
 }
 
 impl FramesArgs {

@@ -43,7 +43,8 @@ pub(super) struct RenderArgs {
     /// How the tables of irregular patches are stored: auto, expanded, compact or hybrid
     #[arg(long = "tables", value_name = "LAYOUT", default_value_t)]
     pub(super) layout: TableLayout,
-    /// Level of the proxy tessellation: 2^LEVEL parts a face each way [default: as fine as the picture asks for]
+    /// Level of the proxy tessellation: 2^LEVEL parts a face each way [default: as fine as the picture asks for, a patch at a
+    /// time in the exact pipeline, whose picture does not depend on it]
     #[arg(long, value_name = "LEVEL", value_parser = clap::value_parser!(u32).range(0..=i64::from(MAX_PROXY_LEVEL)))]
     pub(super) proxy_level: Option<u32>,
     /// Samples a pixel each way
@@ -142,6 +143,7 @@ impl Format {
 
 pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let mut account = Account::default();
+    let samples = if args.show.is_some() { 1 } else { args.samples };
     let format = Format::of(&args.output)?;
     args.rig.check()?;
     args.frames.check()?;
@@ -151,9 +153,17 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     if args.show.is_some() && format == Format::Exr {
         return Err(Failure::Bad("--show colours a .png; an .exr has the residual as a channel anyway".to_owned()));
     }
-    args.json.as_deref().map_or(Ok(()), check_writable)?;
     let paths = args.frames.paths(&args.output)?;
     check_writable(&paths[0])?;
+    if let Some(json) = &args.json {
+        if paths.contains(json) {
+            return Err(Failure::Bad(format!(
+                "{}: --json would overwrite the picture; choose another name",
+                json.display()
+            )));
+        }
+        check_writable(json)?;
+    }
     let pattern = pattern(args)?;
     let bar = progress("drawing".to_owned());
     let mesh = account.time("read", || load(args.mesh.as_deref()))?;
@@ -176,7 +186,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
         }
     }
     if shots.is_empty() {
-        return Ok(());
+        return account.write(args.json.as_ref(), None, samples);
     }
     let gpu = account.time("adapter", Gpu::new)?;
     let uploaded = account.time("tables", || gpu.upload_as(&surface, args.layout))?;
@@ -193,10 +203,8 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     }
     bar.finish_and_clear();
     drop(steps);
-    account.say_certificate(if args.show.is_some() { 1 } else { args.samples });
-    if let Some(path) = &args.json {
-        account.write(path, gpu.adapter(), if args.show.is_some() { 1 } else { args.samples })?;
-    }
+    account.say_certificate(samples);
+    account.write(args.json.as_ref(), Some(gpu.adapter()), samples)?;
     if args.timings {
         account.say_timings(gpu.adapter());
         for layout in TableLayout::ALL {

@@ -3,6 +3,7 @@
 use super::Failure;
 use super::args::vector;
 use crate::field::{Camera, DEFAULT_FOV, Light, Projection, Scout, sample_rig};
+use crate::gpu::MAX_FOV;
 use clap::{Args, ValueEnum};
 use glam::DVec3;
 
@@ -21,10 +22,10 @@ pub(super) struct RigArgs {
     #[arg(long, value_enum, default_value = "perspective")]
     projection: ProjectionName,
     /// Vertical field of view of a perspective picture, in degrees [default: 26]
-    #[arg(long, value_name = "DEG", value_parser = fov)]
+    #[arg(long, value_name = "DEG", value_parser = fov, allow_negative_numbers = true)]
     fov: Option<f64>,
     /// World units that the height of an orthographic picture spans [default: fit]
-    #[arg(long, value_name = "H", value_parser = positive)]
+    #[arg(long, value_name = "H", value_parser = positive, allow_negative_numbers = true)]
     height: Option<f64>,
     /// A point of the light plane, where its coordinates are 0 [default: fit]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
@@ -36,7 +37,7 @@ pub(super) struct RigArgs {
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     light_lines: Option<DVec3>,
     /// Distance from one light line to the next [default: fit]
-    #[arg(long, value_name = "D", value_parser = positive)]
+    #[arg(long, value_name = "D", value_parser = positive, allow_negative_numbers = true)]
     light_spacing: Option<f64>,
     /// Width (across the lines) and length of the light plane [default: infinite]
     #[arg(long, value_name = "W,L", value_parser = extents)]
@@ -54,8 +55,8 @@ fn positive(text: &str) -> Result<f64, String> {
 }
 
 fn fov(text: &str) -> Result<f64, String> {
-    let fov = text.parse().ok().filter(|x| *x > 0.0 && *x < 180.0);
-    fov.ok_or("give a field of view above 0 and below 180 degrees".to_owned())
+    let fov = text.parse().ok().filter(|x| *x > 0.0 && *x <= MAX_FOV);
+    fov.ok_or_else(|| format!("give a field of view above 0 and at most {MAX_FOV} degrees"))
 }
 
 fn extents(text: &str) -> Result<[f64; 2], String> {

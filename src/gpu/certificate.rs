@@ -26,8 +26,8 @@ pub struct Certificate {
     pub state: State,
     /// Newton steps on the chart that was hit; 0 where solved on the host.
     pub steps: u8,
-    /// Distance between the sample's centre and the projection of the point at its (patch, u, v), in samples, to 8 bits, rounded up. Where it was solved on
-    /// the host: 0, for f64 has nothing to say; the point is within 0.002 samples.
+    /// Distance between the sample's centre and the projection of the point at its (patch, u, v), in samples, to 8 bits, rounded
+    /// up.
     pub residual: f32,
     /// On some chart that may lie before what was found, the method did not converge: by proof it must, so this is a defect,
     /// and it is counted.
@@ -56,7 +56,7 @@ impl Certificate {
             state,
             steps: (bits >> 16 & 255) as u8,
             residual: f32::from_bits(bits << 16),
-            doubtful: bits >> 24 & STATE_DOUBTFUL != 0,
+            doubtful: bits >> 24 & STATE_DOUBTFUL != 0 || !f32::from_bits(bits << 16).is_finite(),
         }
     }
 }

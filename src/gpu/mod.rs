@@ -6,7 +6,7 @@
 //!
 //! # Changes
 //! Normalised tables ([`tables`], docs/LIMIT.md, section 4) instead of plain points, patch-local f32 coordinates with matrices
-//! composed in f64, a crack-free proxy, and patterns filtered to the pixel.
+//! composed in f64, the first point on every sample's ray instead of the proxy's (`charts`), and patterns filtered to the pixel.
 //!
 //! # Practice
 //! [`Gpu::new`] opens the adapter, [`Gpu::upload`] makes [`Tables`] of a surface; then [`Gpu::render`] makes pictures,
@@ -30,7 +30,7 @@ pub use certificate::{Certificate, State, Summary};
 pub use device::AdapterChoice;
 pub use frame::{Frame, LinearFrame, NO_PATCH, SurfaceImage, Timings};
 pub use tables::{PatchSource, TableLayout, Tables};
-pub use view::{MAX_ENLARGE, MAX_POINTS_SIDE, MAX_PROXY_LEVEL, MAX_SAMPLES, Palette, Pipeline, Stage, View};
+pub use view::{MAX_ENLARGE, MAX_FOV, MAX_POINTS_SIDE, MAX_PROXY_LEVEL, MAX_SAMPLES, Palette, Pipeline, Stage, View};
 
 use crate::stam::{Jet, LimitSurface};
 use device::Device;

@@ -40,15 +40,15 @@ pub struct SpanRecord {
     pub rows: u32,
 }
 
-/// A chart, as instance attributes 0 to 15 of shaders/charts.wgsl, which says what they are.
+/// A chart, as 16 texels of the table that shaders/shared/chart.wgsl reads; it says what they are.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable, PartialEq)]
 pub struct ChartRecord {
-    /// Patch + 1; x, y and depth of its middle, as bits.
+    /// Patch + 1; x, y of its middle and how far that is before the far end of depths, as bits.
     pub id: [u32; 4],
     /// Inverse of the linear map, row by row.
     pub inverse: [f32; 4],
-    /// (u,v) of the middle, half the side of the square, zero.
+    /// (u,v) of the middle, half the sides of the rectangle.
     pub start: [f32; 4],
     /// Origin and size in the patch.
     pub place: [f32; 4],
@@ -56,7 +56,7 @@ pub struct ChartRecord {
     pub net: [[[f32; 4]; 3]; 4],
 }
 
-/// A sample solved on the host, as vertex attributes 0 to 2 of shaders/specks.wgsl.
+/// A sample solved on the host, as vertex attributes 0 to 3 of shaders/specks.wgsl.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable, PartialEq)]
 pub struct SpeckRecord {
@@ -66,6 +66,8 @@ pub struct SpeckRecord {
     pub patch_id: u32,
     /// Patch-local parameters.
     pub uv: [f32; 2],
+    /// Samples between the point and the sample's ray.
+    pub residual: f32,
 }
 
 /// `Lens`, shaders/charts.wgsl.
@@ -76,14 +78,8 @@ pub struct LensRecord {
     pub size: [f32; 2],
     /// 1 in perspective, else 0.
     pub perspective: f32,
-    /// Depth that the depth buffer shows as 1.
-    pub near: f32,
-    /// Orthographic: depth that it shows as 0.
-    pub far: f32,
-    /// Orthographic: scale of depths.
+    /// What makes 1 of the nearest depth in the depth buffer.
     pub scale: f32,
-    /// Zero.
-    pub padding: [f32; 2],
 }
 
 /// `Resolve`, shaders/resolve.wgsl.

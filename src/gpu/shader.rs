@@ -87,6 +87,7 @@ impl Module {
 const RECORDS: &str = include_str!("../../shaders/shared/records.wgsl");
 const TABLES: &str = include_str!("../../shaders/shared/tables.wgsl");
 const LIMIT_POINT: &str = include_str!("../../shaders/shared/limit_point.wgsl");
+const CERTIFICATE: &str = include_str!("../../shaders/shared/certificate.wgsl");
 const CHART: &str = include_str!("../../shaders/shared/chart.wgsl");
 const FULLSCREEN: &str = include_str!("../../shaders/shared/fullscreen.wgsl");
 const VISIBILITY_PASS: &str = include_str!("../../shaders/visibility.wgsl");
@@ -139,9 +140,10 @@ pub const EVALUATE: Module =
     Module { name: "evaluate", files: &[RECORDS, TABLES, LIMIT_POINT, include_str!("../../shaders/evaluate.wgsl")] };
 
 /// Samples solved on the host.
-pub const SPECKS: Module = Module { name: "specks", files: &[include_str!("../../shaders/specks.wgsl")] };
+pub const SPECKS: Module = Module { name: "specks", files: &[CERTIFICATE, include_str!("../../shaders/specks.wgsl")] };
 /// What each sample sees first.
-pub const CHARTS: Module = Module { name: "charts", files: &[CHART, include_str!("../../shaders/charts.wgsl")] };
+pub const CHARTS: Module =
+    Module { name: "charts", files: &[CHART, CERTIFICATE, include_str!("../../shaders/charts.wgsl")] };
 
 /// All modules.
 pub const MODULES: [Module; 10] =

@@ -16,6 +16,8 @@ pub const MAX_ENLARGE: f64 = 8.0;
 /// Largest side, in samples, of a picture by [`Pipeline::Points`]: points land anywhere, so it is drawn in one piece,
 /// and its intermediate textures take 16 bytes a sample.
 pub const MAX_POINTS_SIDE: u32 = 4096;
+/// Largest vertical field of view in degrees.
+pub const MAX_FOV: f64 = 179.0;
 /// Largest picture side in pixels.
 const MAX_SIZE: u32 = 32_768;
 
@@ -137,13 +139,26 @@ impl View {
             return fail("the camera's up direction must not be zero or parallel to the line of sight".into());
         }
         match projection {
-            Projection::Perspective { fov } if !(fov > 0.0 && fov < 180.0) => {
-                return fail(format!("field of view {fov}: must be between 0 and 180 degrees"));
+            Projection::Perspective { fov } if !(fov > 0.0 && fov <= MAX_FOV) => {
+                return fail(format!("field of view {fov}: must be above 0 and at most {MAX_FOV} degrees"));
             }
             Projection::Orthographic { height } if !(height > 0.0 && height.is_finite()) => {
                 return fail(format!("view height {height}: must be a finite length above 0"));
             }
             _ => {}
+        }
+        // Positions have 16 digits; a picture needs some within a pixel.
+        let distance = (target - eye).length();
+        let height = match projection {
+            Projection::Perspective { fov } => 2.0 * distance * (fov.to_radians() * 0.5).tan(),
+            Projection::Orthographic { height } => height,
+        };
+        let pixel = height / f64::from(size[1] * self.samples.max(1));
+        let largest = eye.abs().max_element().max(target.abs().max_element()).max(distance);
+        if pixel.partial_cmp(&(1e-12 * largest)) != Some(std::cmp::Ordering::Greater) {
+            return fail(format!(
+                "a pixel would span {pixel:.0e} world units at the target, too little beside coordinates of {largest:.0e}: show a larger part"
+            ));
         }
         if let Some(level) = self.proxy_level.filter(|&level| level > MAX_PROXY_LEVEL) {
             return fail(format!("proxy level {level}: must be 0 to {MAX_PROXY_LEVEL}"));
@@ -349,7 +364,7 @@ impl Tile {
     /// Largest side for pictures: with 44 bytes a sample the intermediate textures take 176 MiB, whatever the picture's
     /// size.
     pub const PICTURE_SIDE: u32 = 2048;
-    /// Largest side for surface images, which take 64 bytes a sample and as much again while they are read back.
+    /// Largest side for surface images, which take 68 bytes a sample and as much again while they are read back.
     pub const SURFACE_SIDE: u32 = 1024;
 
     /// Tiles of a picture of `size` pixels.

@@ -79,12 +79,20 @@ fn beside(path: &Path) -> std::io::Result<tempfile::NamedTempFile> {
     file.tempfile_in(folder).map_err(|error| error.kind().into())
 }
 
+/// Whether there is something at the path that is neither a file nor a folder.
+fn is_special(path: &Path) -> bool {
+    std::fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir())
+}
+
 /// Tells early, before the work, that a file could not be written: its folder is missing or not writable, or the path
 /// is a folder.
 ///
 /// # Errors
 /// As above. Nothing is left behind.
 pub fn check_writable(path: &Path) -> Result<(), OutputError> {
+    if is_special(path) {
+        return Ok(());
+    }
     begin(path).map(drop).map_err(|source| OutputError { path: path.to_owned(), source })
 }
 
@@ -97,6 +105,12 @@ pub fn write_whole(
     content: impl FnOnce(&mut dyn WriteSeek) -> std::io::Result<()>,
 ) -> Result<(), OutputError> {
     let write = || -> std::io::Result<()> {
+        // A device or a pipe is written to, not replaced.
+        if is_special(path) {
+            let mut writer = BufWriter::new(std::fs::OpenOptions::new().write(true).open(path)?);
+            content(&mut writer)?;
+            return writer.flush();
+        }
         let (file, _unfinished) = begin(path)?;
         let mut writer = BufWriter::new(file);
         content(&mut writer)?;

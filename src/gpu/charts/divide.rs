@@ -6,7 +6,7 @@ use super::cover::Cover;
 use super::frame::{ChartFrame, Flat};
 use super::lens::Lens;
 use super::piece::Piece;
-use super::solve::{POINT, first_hit, newton};
+use super::solve::{Hit, POINT, first_hit, newton};
 use crate::gpu::records::{ChartRecord, SpeckRecord};
 use crate::gpu::tables::PatchNets;
 use crate::stam::{Rings, WINDOWS};
@@ -74,7 +74,8 @@ impl<'a> Divider<'a> {
                         if bounds.near < self.lens.near {
                             return;
                         }
-                        self.speck(samples.map(|range| range.start), [0.0; 2], bounds.near);
+                        let seen = self.lens.seen(limit.to_array());
+                        self.push_speck(samples.map(|range| range.start), bounds.near, [0.0; 2], seen);
                         return;
                     }
                 }
@@ -141,13 +142,14 @@ impl<'a> Divider<'a> {
     }
 
     fn chart(&mut self, piece: &Piece, ChartFrame { frame, half }: &ChartFrame) {
-        let [x, y, depth] = [frame.centre[0], frame.centre[1], frame.depth].map(|x| (x as f32).to_bits());
+        let before_far = self.lens.before_far(frame.depth);
+        let [x, y, depth] = [frame.centre[0], frame.centre[1], before_far].map(|x| (x as f32).to_bits());
         let row = |values: [f64; 4]| values.map(|x| x as f32);
         let [[a, b], [c, d]] = frame.inverse;
         self.out.charts.push(ChartRecord {
             id: [self.patch + 1, x, y, depth],
             inverse: row([a, b, c, d]),
-            start: row([frame.start[0], frame.start[1], *half, 0.0]),
+            start: row([frame.start[0], frame.start[1], half[0], half[1]]),
             place: row([piece.origin[0], piece.origin[1], piece.size[0], piece.size[1]]),
             net: piece.relative_to(self.lens, frame),
         });
@@ -162,7 +164,7 @@ impl<'a> Divider<'a> {
                 (None, Some(flat)) if flat.misses(p) => None,
                 (None, _) => first_hit(self.lens, piece, flat, p),
             };
-            hit.into_iter().for_each(|hit| self.speck(sample, hit.uv, hit.depth));
+            hit.into_iter().for_each(|hit| self.speck(piece, sample, hit));
         }
     }
 
@@ -170,13 +172,22 @@ impl<'a> Divider<'a> {
     fn solve_line(&mut self, piece: &Piece, line: Line, samples: [Range<u32>; 2]) {
         for sample in each(samples).filter(|&sample| line.distance(centre(sample)) <= POINT + BAND) {
             let hit = first_hit(self.lens, piece, None, centre(sample));
-            hit.into_iter().for_each(|hit| self.speck(sample, hit.uv, hit.depth));
+            hit.into_iter().for_each(|hit| self.speck(piece, sample, hit));
         }
     }
 
-    fn speck(&mut self, sample: [u32; 2], uv: [f64; 2], depth: f64) {
+    /// A hit in a piece. Its residual is what the sample sees of the point at the (u,v) that is handed on, with its rounding.
+    fn speck(&mut self, piece: &Piece, sample: [u32; 2], hit: Hit) {
+        let uv = hit.uv.map(|x| x as f32);
+        let seen = self.lens.seen(piece.at(piece.to_own(uv.map(f64::from))).value);
+        self.push_speck(sample, hit.depth, uv, seen);
+    }
+
+    fn push_speck(&mut self, sample: [u32; 2], depth: f64, uv: [f32; 2], seen: [f64; 2]) {
+        let [x, y] = centre(sample);
+        let residual = ((seen[0] - x).powi(2) + (seen[1] - y).powi(2)).sqrt() as f32;
         let place = self.lens.place(sample, depth);
-        self.out.specks.push(SpeckRecord { place, patch_id: self.patch + 1, uv: uv.map(|x| x as f32) });
+        self.out.specks.push(SpeckRecord { place, patch_id: self.patch + 1, uv, residual });
     }
 }
 

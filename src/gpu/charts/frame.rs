@@ -66,13 +66,17 @@ impl Frame {
     }
 }
 
+/// Samples by which rasterisers may move a corner, which is more than thin charts are wide: a multiple of their grid of 1/256.
+const SNAP: f64 = 1.0 / 64.0;
+
 /// A frame whose linear map is so close to the projection that Newton's method must find what a sample sees.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ChartFrame {
     pub frame: Frame,
-    /// Half the side of the square round (1/2, 1/2) in which the linear map sees every sample that the chart covers: it errs by
-    /// the mean of E on the way from the middle. And a thousandth more, for the rounding of the parallelogram's corners.
-    pub half: f64,
+    /// Half the sides of the rectangle round (1/2, 1/2) in which the linear map sees every sample that the chart covers: it errs
+    /// by the mean of E on the way from the middle. And a thousandth more, for the rounding of the parallelogram's corners, and
+    /// [`SNAP`].
+    pub half: [f64; 2],
 }
 
 /// A net as a frame's linear map, undone, sees it: there u and v each grow by a third from control value to control value
@@ -121,7 +125,7 @@ impl Flat {
             distortion = max(distortion, slant + 0.5 * bend);
             mean = max(mean, slant + 0.25 * bend);
         }
-        let half = 0.501 * (1.0 + mean) + 2.0 * self.frame.band();
+        let half = inverse.map(|[a, b]| 0.501 * (1.0 + mean) + (2.0 * BAND + SNAP) * (a.abs() + b.abs()));
         (distortion < MAX_DISTORTION).then_some(ChartFrame { frame: self.frame, half })
     }
 

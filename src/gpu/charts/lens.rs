@@ -66,7 +66,13 @@ impl Lens {
     /// Whether one depth is less than another by more than f32 can tell, which keeps depths that differ by rounding alone from
     /// being looked into.
     pub fn is_nearer(&self, depth: f64, than: f64) -> bool {
-        than - depth > 1e-9 * (self.far.abs() + than.abs())
+        than - depth > 1e-9 * (self.far - self.near) + 1e-15 * than.abs()
+    }
+
+    /// Where in the picture a projected point is seen, in samples.
+    pub fn seen(&self, [x, y, depth]: [f64; 3]) -> [f64; 2] {
+        let weight = self.weight(depth);
+        [x / weight, y / weight]
     }
 
     /// What x and y of a point at this depth are multiplied by.
@@ -89,8 +95,13 @@ impl Lens {
     /// the nearer is the greater.
     pub fn place(&self, sample: [u32; 2], depth: f64) -> [f32; 3] {
         let [x, y] = [0, 1].map(|k| (2.0 * f64::from(sample[k]) + 1.0) / self.size[k] - 1.0);
-        let shown = if self.perspective { self.near / depth } else { (self.far - depth) * self.scale() };
-        [x as f32, -y as f32, shown as f32]
+        [x as f32, -y as f32, (self.scale() * self.before_far(depth)) as f32]
+    }
+
+    /// How far a depth lies before the far end, in perspective as part of itself. Taken in f64, for seen from afar the object
+    /// takes up the last digits of its depths.
+    pub fn before_far(&self, depth: f64) -> f64 {
+        (self.far - depth) / self.weight(depth)
     }
 
     /// A depth beyond all those that the depth buffer shows as `shown`, whatever f32 rounded; infinite for the background.
@@ -98,15 +109,20 @@ impl Lens {
         // Over a dozen roundings: of the near and the far distance, the depth, and their quotient or difference.
         const ROUNDING: f64 = 1e-6;
         let shown = f64::from(shown);
+        let before_far = shown / self.scale();
         match self.perspective {
             _ if shown <= 0.0 => f64::INFINITY,
-            true => self.near / shown * (1.0 + ROUNDING),
-            false => self.far - shown / self.scale() + ROUNDING * (self.near.abs() + self.far.abs()),
+            true => {
+                let depth = self.far / (1.0 + before_far);
+                depth + ROUNDING * depth.min(self.far - self.near)
+            }
+            false => self.far - before_far + ROUNDING * (self.far - self.near),
         }
     }
 
+    /// What makes [`before_far`](Self::before_far) of the near end 1.
     fn scale(&self) -> f64 {
-        1.0 / (self.far - self.near)
+        1.0 / self.before_far(self.near)
     }
 
     /// As shaders/charts.wgsl reads it.
@@ -114,10 +130,7 @@ impl Lens {
         LensRecord {
             size: self.size.map(|n| n as f32),
             perspective: if self.perspective { 1.0 } else { 0.0 },
-            near: self.near as f32,
-            far: self.far as f32,
             scale: self.scale() as f32,
-            padding: [0.0; 2],
         }
     }
 }

@@ -46,8 +46,8 @@ use divide::{Divider, Harvest};
 use lens::Lens;
 use rayon::prelude::*;
 
-/// Distance in samples within which the border of a piece is taken for its inside, so that neighbours leave no gap: a
-/// hundred times what f32 rounds in a chart, a fifth of the 0.01 pixel within which silhouettes are to be right.
+/// Distance in samples within which the border of a piece is taken for its inside, so that neighbours leave no gap: ten
+/// times what f32 rounds in a chart, a fiftieth of the 0.01 pixel within which silhouettes are to be right.
 pub(super) const BAND: f64 = 2e-4;
 
 /// q up to which a piece is a chart, below 1/2: Newton's error shrinks by a fifth at least each step, in practice quadratically.

@@ -77,8 +77,10 @@ impl Piece {
             .fold(DVec3::ZERO, |far, d| if d.length_squared() > far.length_squared() { d } else { far });
         // Relative to the length of the line; rounding is below it unless the eye is a million lengths away.
         const ROUNDING: f64 = 1e-10;
-        let most = ROUNDING * farthest.length_squared();
-        (1..16).all(|k| (point(k) - from).cross(farthest).length() <= most)
+        let most = ROUNDING * farthest.length();
+        // Of unit length first, for products of tiny numbers vanish.
+        let direction = farthest.normalize_or_zero();
+        (1..16).all(|k| (point(k) - from).cross(direction).length() <= most)
     }
 
     /// The line that the piece is seen as, if its projected hull is nowhere wider than [`POINT`].
@@ -151,6 +153,11 @@ impl Piece {
             jet.dv[c] = dot(&slope, &bu);
         }
         jet
+    }
+
+    /// The piece's own parameters at those of the patch.
+    pub fn to_own(&self, [u, v]: [f64; 2]) -> [f64; 2] {
+        [(u - self.origin[0]) / self.size[0], (v - self.origin[1]) / self.size[1]]
     }
 
     /// Parameters of the patch at the piece's own.

@@ -16,7 +16,7 @@ pub(super) struct Hit {
 
 /// Halvings after which a piece is a point, whatever its bounds say.
 const DEEPEST: u32 = 96;
-/// Samples that a piece may span and be a point: a fifth of the 0.01 pixel within which silhouettes are to be right.
+/// Samples that a piece may span and be a point: a fiftieth of the 0.01 pixel within which silhouettes are to be right.
 pub(super) const POINT: f64 = 2e-4;
 
 /// The first point of a piece that the sample at `p` sees, by halving down to charts. Within [`BAND`] of the piece's border,
@@ -98,7 +98,7 @@ pub(super) fn newton(lens: &Lens, piece: &Piece, chart: &ChartFrame, p: [f64; 2]
     const STEPS: usize = 64;
     let (flat, start) = (chart.frame.flat(p), chart.frame.start);
     let guess = [start[0] + flat[0], start[1] + flat[1]];
-    if guess.iter().any(|x| (x - 0.5).abs() > chart.half) {
+    if guess.iter().zip(chart.half).any(|(x, half)| (x - 0.5).abs() > half) {
         return None;
     }
     let clamp = |uv: [f64; 2]| uv.map(|x| x.clamp(0.0, 1.0));

@@ -25,7 +25,7 @@ fn speck_pipeline<'a>(passes: &'a Passes, device: &Device) -> &'a wgpu::RenderPi
         let layout = VertexBufferLayout {
             array_stride: size_of::<SpeckRecord>() as u64,
             step_mode: VertexStepMode::Vertex,
-            attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Uint32, 2 => Float32x2],
+            attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Uint32, 2 => Float32x2, 3 => Float32],
         };
         create(passes, device, &SPECKS, ["speck", "solved"], PrimitiveTopology::PointList, Some(layout))
     })
