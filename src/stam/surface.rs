@@ -141,13 +141,16 @@ impl LimitSurface {
 
     /// Control points of an irregular patch relative to s0, and s0.
     pub(super) fn irregular_net(&self, patch: usize, table: &ClassTable) -> (Vec<DVec3>, DVec3) {
-        let points: Vec<DVec3> =
+        let mut points: Vec<DVec3> =
             self.patches.support(patch).iter().map(|&vertex| self.points[vertex as usize]).collect();
         // Relative to the vertex first: world coordinates would cost digits.
         let centre = points[0];
         let offset = points.iter().zip(&table.limit).map(|(&p, &w)| w * (p - centre)).sum::<DVec3>();
         let limit = centre + offset;
-        (points.into_iter().map(|p| (p - centre) - offset).collect(), limit)
+        for point in &mut points {
+            *point = (*point - centre) - offset;
+        }
+        (points, limit)
     }
 
     /// Control net of a patch; `levels` (1 to [`LEVELS`](super::LEVELS)) levels of it where it is irregular.

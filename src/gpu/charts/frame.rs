@@ -2,7 +2,7 @@
 
 use super::bounds::Bounds;
 use super::lens::Lens;
-use super::net::{Net, greatest, least, max, min, row, transposed, unevenness};
+use super::net::{Net, bend, greatest, least, max, min, row};
 use super::piece::Jet;
 use super::{BAND, MAX_DISTORTION};
 
@@ -19,6 +19,8 @@ pub(super) struct Frame {
     pub inverse: [[f64; 2]; 2],
     /// (u,v) that the linear map gives `centre`.
     pub start: [f64; 2],
+    /// Change of the weight along u and v in the middle, as a part of it.
+    pub slope: f64,
     /// Whether v is longer than u, in city blocks.
     pub longer_along_v: bool,
 }
@@ -46,8 +48,9 @@ impl Frame {
         let inverse = [[dv[1] * over, -dv[0] * over], [-du[1] * over, du[0] * over]];
         let offset = [0, 1].map(|k| middle.value[k] * scale - centre[k]);
         let start = [0, 1].map(|row: usize| 0.5 - inverse[row][0] * offset[0] - inverse[row][1] * offset[1]);
+        let slope = [middle.du, middle.dv].iter().map(|d| lens.weight_change(d[2]).abs()).sum::<f64>() * scale;
         let longer_along_v = dv[0].abs() + dv[1].abs() > du[0].abs() + du[1].abs();
-        Some(Frame { centre, depth: middle.value[2], weight, inverse, start, longer_along_v })
+        Some(Frame { centre, depth: middle.value[2], weight, inverse, start, slope, longer_along_v })
     }
 
     /// (u,v) that the linear map gives a sample, less those of the centre.
@@ -71,7 +74,7 @@ const SNAP: f64 = 1.0 / 64.0;
 pub(super) struct ChartFrame {
     pub frame: Frame,
     /// Half the sides of the rectangle round (1/2, 1/2) in which the linear map sees every sample that the chart covers: it errs
-    /// by q times the distance from the middle. And a thousandth more, for the rounding of the parallelogram's corners, and
+    /// by the mean of E on the way from the middle. And a thousandth more, for the rounding of the parallelogram's corners, and
     /// [`SNAP`].
     pub half: [f64; 2],
 }
@@ -106,30 +109,24 @@ impl Flat {
     }
 
     /// The chart that a piece within `bounds` is, if it is one.
+    ///
+    /// With J the derivative of (x,y) - p weight by the piece's own u and v for a sample p in the bounds, J0 that in the middle
+    /// for the sample there, and J0^-1 J = 1 + E: in the middle E is `slant`, what the weight's slope makes of the distance
+    /// between the samples, and it changes by at most `bend` from side to side. All in the maximum norm.
     #[inline(always)]
     pub fn chart(&self, bounds: &Bounds) -> Option<ChartFrame> {
-        let distortion = self.distortion(bounds);
-        let half =
-            self.frame.inverse.map(|[a, b]| 0.501 * (1.0 + distortion) + (2.0 * BAND + SNAP) * (a.abs() + b.abs()));
-        (distortion < MAX_DISTORTION).then_some(ChartFrame { frame: self.frame, half })
-    }
-
-    /// q: with J the derivative of (x,y) - p weight by the piece's own u and v, at any of its points and for any sample p in its
-    /// bounds, and J0 that in the middle for the sample there, it bounds the maximum norm of J0^-1 J - 1: derivative nets are
-    /// convex combinations of their control vectors.
-    #[inline(always)]
-    fn distortion(&self, bounds: &Bounds) -> f64 {
-        let Frame { centre, inverse, .. } = &self.frame;
+        let Frame { centre, inverse, slope, .. } = &self.frame;
         let reach = [0, 1].map(|k| max(bounds.high[k] - centre[k], centre[k] - bounds.low[k]) + BAND);
-        let change = unevenness(&self.weight, 0.0) + unevenness(&transposed(&self.weight), 0.0);
-        let mut most = 0.0;
-        for (axis, [along_u, along_v]) in [[1.0 / 3.0, 0.0], [0.0, 1.0 / 3.0]].into_iter().enumerate() {
-            let net = &self.net[axis];
-            let deviation = unevenness(&transposed(net), along_u) + unevenness(net, along_v);
-            let slack = change * (inverse[axis][0].abs() * reach[0] + inverse[axis][1].abs() * reach[1]);
-            most = max(most, 3.0 * (deviation + slack));
+        let weight_bend = bend(&self.weight);
+        let (mut distortion, mut mean) = (0.0, 0.0);
+        for (net, [a, b]) in self.net.iter().zip(inverse) {
+            let reach = a.abs() * reach[0] + b.abs() * reach[1];
+            let (slant, bend) = (reach * slope, bend(net) + reach * weight_bend);
+            distortion = max(distortion, slant + 0.5 * bend);
+            mean = max(mean, slant + 0.25 * bend);
         }
-        most
+        let half = inverse.map(|[a, b]| 0.501 * (1.0 + mean) + (2.0 * BAND + SNAP) * (a.abs() + b.abs()));
+        (distortion < MAX_DISTORTION).then_some(ChartFrame { frame: self.frame, half })
     }
 
     /// Whether the sample at `p` cannot see the piece, nor within [`BAND`] of it: whether all of it lies to one side of `p`.

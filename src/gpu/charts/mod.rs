@@ -4,12 +4,14 @@
 //! The projection of the surface is folded at its silhouette and one-to-one elsewhere. A *chart* is a piece of a patch on which the
 //! projection is so close to affine that Newton's method must find the point that a sample sees, or that there is none. With
 //! G(u,v) = (x,y) - p weight (homogeneous, so that perspective needs no division), J its derivative, J0 that in the middle,
-//! and q >= |J0^-1 J - 1| in the maximum norm all over the piece and for all samples p in its bounds (from the control vectors of
-//! the derivative nets, which are hulls): G is one-to-one for q < 1, and a Newton step, kept inside the piece, brings (u,v)
-//! nearer to the solution by 2q / (1 - q) at least, whatever the start.
-//! *Proof.* G(y) - G(x) = K (y - x) with K the mean of J on the way from x to y; |J0^-1 K - 1| <= q too. For G(y) = 0 the step
-//! from x leads to x' = x + J(x)^-1 K (y - x), so x' - y = (J(x)^-1 K - 1)(y - x), and |J^-1 K - 1| = |(J0^-1 J)^-1 (J0^-1 K -
-//! J0^-1 J)| <= 2q / (1 - q). Clamping to the square brings x' nearer to y, which lies in it.
+//! J0^-1 J = 1 + E, and all norms the maximum norm: let E change by at most b from side to side of the piece (by the control
+//! vectors of the second derivatives, which are hulls), and |E| <= q, q >= b/2, for all samples p in its bounds. Then G is
+//! one-to-one for q < 1, and a Newton step, kept inside the piece, brings (u,v) nearer to the solution by q / (1 - q) at least,
+//! whatever the start.
+//! *Proof.* G(y) - G(x) = J0 (1 + M) (y - x) with M the mean of E on the way from x to y, so |M| <= q. For G(y) = 0 the step
+//! from x leads to x' = x + J(x)^-1 J0 (1 + M) (y - x), so x' - y = (1 + E(x))^-1 (M - E(x)) (y - x). On the way E departs from
+//! E(x) by at most b times the part of the side that is gone, in the mean by b/2 <= q. Clamping to the square brings x' nearer to
+//! y, which lies in it.
 //!
 //! # Changes
 //! Yasui & Kanai 2004 evaluate at parameters that the rasteriser interpolates, so positions miss their pixels and silhouettes are
@@ -48,8 +50,8 @@ use rayon::prelude::*;
 /// times what f32 rounds in a chart, a fiftieth of the 0.01 pixel within which silhouettes are to be right.
 pub(super) const BAND: f64 = 2e-4;
 
-/// q up to which a piece is a chart: Newton's error shrinks to a half at least each step, in practice quadratically.
-const MAX_DISTORTION: f64 = 0.3;
+/// q up to which a piece is a chart, below 1/2: Newton's error shrinks by a fifth at least each step, in practice quadratically.
+const MAX_DISTORTION: f64 = 0.45;
 
 /// What the samples of a tile may see.
 #[derive(Debug)]
@@ -113,11 +115,8 @@ impl<'a> Cutter<'a> {
                 divider.out
             })
             .collect();
-        let (mut charts, mut specks) = (Vec::new(), Vec::new());
-        for harvest in harvests {
-            charts.extend(harvest.charts);
-            specks.extend(harvest.specks);
-        }
-        Charts { charts, specks, lens: lens.record(), is_rest: cover.is_some() }
+        let charts: Vec<&[ChartRecord]> = harvests.iter().map(|harvest| harvest.charts.as_slice()).collect();
+        let specks: Vec<&[SpeckRecord]> = harvests.iter().map(|harvest| harvest.specks.as_slice()).collect();
+        Charts { charts: charts.concat(), specks: specks.concat(), lens: lens.record(), is_rest: cover.is_some() }
     }
 }

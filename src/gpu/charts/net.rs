@@ -92,16 +92,28 @@ pub(super) fn halve(net: &mut Net, along_v: bool) -> Net {
     transposed(&high)
 }
 
-/// The largest distance between `mean` and the difference of neighbours across the rows.
+/// How much the derivatives of a Bezier net may change from one side of it to the other: a bound on its second derivatives, which
+/// are convex combinations of second differences.
 #[inline(always)]
-pub(super) fn unevenness(net: &Net, mean: f64) -> f64 {
-    let mut most = [0.0; 4];
-    for j in 0..3 {
-        for k in 0..4 {
-            most[k] = max(most[k], (net[j + 1][k] - net[j][k] - mean).abs());
+pub(super) fn bend(net: &Net) -> f64 {
+    let steps = net.each_ref().map(|row| [row[1] - row[0], row[2] - row[1], row[3] - row[2]]);
+    let [mut along_u, mut along_v, mut twist] = [[0.0f64; 4]; 3];
+    for step in &steps {
+        for k in 0..2 {
+            along_u[k] = max(along_u[k], (step[k + 1] - step[k]).abs());
         }
     }
-    greatest(&most)
+    for j in 0..2 {
+        for k in 0..4 {
+            along_v[k] = max(along_v[k], ((net[j + 2][k] - net[j + 1][k]) - (net[j + 1][k] - net[j][k])).abs());
+        }
+    }
+    for j in 0..3 {
+        for k in 0..3 {
+            twist[k] = max(twist[k], (steps[j + 1][k] - steps[j][k]).abs());
+        }
+    }
+    6.0 * (greatest(&along_u) + greatest(&along_v)) + 18.0 * greatest(&twist)
 }
 
 #[inline(always)]
