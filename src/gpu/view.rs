@@ -147,7 +147,7 @@ impl View {
             }
             _ => {}
         }
-        // Positions have 16 digits; a picture needs some within a pixel.
+        // Positions have 16 digits; below the last one there is nothing to see.
         let distance = (target - eye).length();
         let height = match projection {
             Projection::Perspective { fov } => 2.0 * distance * (fov.to_radians() * 0.5).tan(),
@@ -155,7 +155,8 @@ impl View {
         };
         let pixel = height / f64::from(size[1] * self.samples.max(1));
         let largest = eye.abs().max_element().max(target.abs().max_element()).max(distance);
-        if pixel.partial_cmp(&(1e-12 * largest)) != Some(std::cmp::Ordering::Greater) {
+        // The fitted camera of a single point in the origin is a few of the least numbers away.
+        if largest > f64::MIN_POSITIVE.sqrt() && pixel < 1e-15 * largest {
             return fail(format!(
                 "a pixel would span {pixel:.0e} world units at the target, too little beside coordinates of {largest:.0e}: show a larger part"
             ));
