@@ -1,6 +1,6 @@
 //! `shaders/charts.wgsl` and `shaders/specks.wgsl`: the point that each sample sees first.
 
-use super::{CERTIFICATE_FORMAT, DEPTH_FORMAT, PATCH_FORMAT, Passes, UV_FORMAT, Visible};
+use super::{CERTIFICATE_FORMAT, Depth, Drawing, PATCH_FORMAT, Passes, UV_FORMAT, Visible};
 use super::{bind, cleared, whole};
 use crate::gpu::GpuError;
 use crate::gpu::charts::Charts;
@@ -35,40 +35,12 @@ fn create(
     passes: &Passes,
     device: &Device,
     module: &Module,
-    [vertex, fragment]: [&str; 2],
+    entries: [&str; 2],
     topology: PrimitiveTopology,
     layout: Option<VertexBufferLayout<'_>>,
 ) -> wgpu::RenderPipeline {
-    let shader = passes.shader(device, module);
-    let formats = [PATCH_FORMAT, UV_FORMAT, CERTIFICATE_FORMAT].map(|format| Some(format.into()));
-    device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some(module.name),
-        layout: None,
-        vertex: wgpu::VertexState {
-            module: &shader,
-            entry_point: Some(vertex),
-            compilation_options: Default::default(),
-            buffers: layout.map(Some).as_slice(),
-        },
-        primitive: wgpu::PrimitiveState { topology, ..Default::default() },
-        // Reversed depth: the greater is the nearer.
-        depth_stencil: Some(wgpu::DepthStencilState {
-            format: DEPTH_FORMAT,
-            depth_write_enabled: Some(true),
-            depth_compare: Some(wgpu::CompareFunction::Greater),
-            stencil: Default::default(),
-            bias: Default::default(),
-        }),
-        multisample: Default::default(),
-        fragment: Some(wgpu::FragmentState {
-            module: &shader,
-            entry_point: Some(fragment),
-            compilation_options: Default::default(),
-            targets: &formats,
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
+    let formats = &[PATCH_FORMAT, UV_FORMAT, CERTIFICATE_FORMAT];
+    super::create(passes, device, &Drawing { module, entries, topology, layout, formats, depth: Depth::Nearest })
 }
 
 pub fn run(device: &Device, passes: &Passes, charts: &Charts, visible: &Visible) -> Result<(), GpuError> {

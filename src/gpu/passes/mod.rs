@@ -15,7 +15,7 @@ use super::shader::{Module, TILE_SIDE, Variant};
 use super::view::Tile;
 use super::{GpuError, Pipeline, Stage, Tables, View};
 use std::sync::OnceLock;
-use wgpu::{BufferUsages, TextureFormat, TextureUsages};
+use wgpu::{BufferUsages, PrimitiveTopology, TextureFormat, TextureUsages};
 
 /// The compiled pipelines, each made when it is first needed: on a software adapter compiling takes longer than drawing.
 #[derive(Debug, Default)]
@@ -225,31 +225,72 @@ fn fullscreen(
     formats: &[TextureFormat],
     masked: bool,
 ) -> wgpu::RenderPipeline {
+    create(
+        passes,
+        device,
+        &Drawing {
+            module,
+            entries: ["fullscreen", entry],
+            topology: PrimitiveTopology::TriangleList,
+            layout: None,
+            formats,
+            depth: if masked { Depth::Mask } else { Depth::None },
+        },
+    )
+}
+
+/// What a render pipeline does with the depth buffer.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Depth {
+    /// There is none.
+    None,
+    /// It keeps the nearest. Reversed depth: the greater is the nearer.
+    Nearest,
+    /// It says where there is surface: a triangle at depth 0, the value of the background, is drawn where it is greater.
+    Mask,
+}
+
+/// What a render pipeline draws, and into what. Both sides are seen: open panels have an inside.
+struct Drawing<'a> {
+    module: &'a Module,
+    /// Vertex and fragment.
+    entries: [&'a str; 2],
+    topology: PrimitiveTopology,
+    layout: Option<wgpu::VertexBufferLayout<'a>>,
+    formats: &'a [TextureFormat],
+    depth: Depth,
+}
+
+fn create(passes: &Passes, device: &Device, drawing: &Drawing<'_>) -> wgpu::RenderPipeline {
+    let Drawing { module, entries: [vertex, fragment], topology, ref layout, formats, depth } = *drawing;
+    let shader = passes.shader(device, module);
     let targets: Vec<_> = formats.iter().map(|&format| Some(format.into())).collect();
-    // The triangle lies at depth 0, the value of the background; surface is greater.
-    let mask = wgpu::DepthStencilState {
+    let depth_state = |write, compare| wgpu::DepthStencilState {
         format: DEPTH_FORMAT,
-        depth_write_enabled: Some(false),
-        depth_compare: Some(wgpu::CompareFunction::Less),
+        depth_write_enabled: Some(write),
+        depth_compare: Some(compare),
         stencil: Default::default(),
         bias: Default::default(),
     };
-    let shader = passes.shader(device, module);
     device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(module.name),
         layout: None,
         vertex: wgpu::VertexState {
             module: &shader,
-            entry_point: Some("fullscreen"),
+            entry_point: Some(vertex),
             compilation_options: Default::default(),
-            buffers: &[],
+            buffers: layout.clone().map(Some).as_slice(),
         },
-        primitive: Default::default(),
-        depth_stencil: masked.then_some(mask),
+        primitive: wgpu::PrimitiveState { topology, ..Default::default() },
+        depth_stencil: match depth {
+            Depth::None => None,
+            Depth::Nearest => Some(depth_state(true, wgpu::CompareFunction::Greater)),
+            Depth::Mask => Some(depth_state(false, wgpu::CompareFunction::Less)),
+        },
         multisample: Default::default(),
         fragment: Some(wgpu::FragmentState {
             module: &shader,
-            entry_point: Some(entry),
+            entry_point: Some(fragment),
             compilation_options: Default::default(),
             targets: &targets,
         }),

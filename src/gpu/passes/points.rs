@@ -1,6 +1,8 @@
 //! `shaders/points.wgsl`: exact positions of the proxy's fragments, and the fragments drawn as points.
 
-use super::{Colour, Passes, PictureTargets, Scene, Visible, bind, draw_fullscreen, fullscreen, target, whole};
+use super::{
+    Colour, Depth, Drawing, Passes, PictureTargets, Scene, Visible, bind, draw_fullscreen, fullscreen, target, whole,
+};
 use super::{DEPTH_FORMAT, PACKED_FORMAT, PATCH_FORMAT, SAMPLE_FORMAT, SURFACE_FORMAT, UV_FORMAT};
 use crate::gpu::device::Device;
 use crate::gpu::view::Tile;
@@ -21,36 +23,15 @@ fn pipeline_full<'a>(passes: &'a Passes, device: &Device) -> &'a wgpu::RenderPip
 }
 
 fn create(passes: &Passes, device: &Device, entry: &str, formats: &[wgpu::TextureFormat]) -> wgpu::RenderPipeline {
-    let shader = passes.shader(device, &POINTS);
-    let targets: Vec<_> = formats.iter().map(|&format| Some(format.into())).collect();
-    device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some("points"),
+    let drawing = Drawing {
+        module: &POINTS,
+        entries: ["point", entry],
+        topology: wgpu::PrimitiveTopology::PointList,
         layout: None,
-        vertex: wgpu::VertexState {
-            module: &shader,
-            entry_point: Some("point"),
-            compilation_options: Default::default(),
-            buffers: &[],
-        },
-        primitive: wgpu::PrimitiveState { topology: wgpu::PrimitiveTopology::PointList, ..Default::default() },
-        // As in the visibility pass: the greater is the nearer.
-        depth_stencil: Some(wgpu::DepthStencilState {
-            format: DEPTH_FORMAT,
-            depth_write_enabled: Some(true),
-            depth_compare: Some(wgpu::CompareFunction::Greater),
-            stencil: Default::default(),
-            bias: Default::default(),
-        }),
-        multisample: Default::default(),
-        fragment: Some(wgpu::FragmentState {
-            module: &shader,
-            entry_point: Some(entry),
-            compilation_options: Default::default(),
-            targets: &targets,
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
+        formats,
+        depth: Depth::Nearest,
+    };
+    super::create(passes, device, &drawing)
 }
 
 /// Where the points land: the whole picture. Starts empty, as new textures are zero and so is the depth of nothing.

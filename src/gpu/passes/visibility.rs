@@ -1,6 +1,6 @@
 //! `shaders/visibility.wgsl`: which patch, at which (u,v), each pixel sees.
 
-use super::{DEPTH_FORMAT, PATCH_FORMAT, Passes, SURFACE_FORMAT, Scene, UV_FORMAT, Visible};
+use super::{Depth, Drawing, PATCH_FORMAT, Passes, SURFACE_FORMAT, Scene, UV_FORMAT, Visible};
 use super::{bind, cleared, whole};
 use crate::gpu::device::Device;
 use crate::gpu::proxy::{Draw, Proxy};
@@ -57,41 +57,20 @@ fn create(
     [vertex, fragment]: [&str; 2],
     formats: &[wgpu::TextureFormat],
 ) -> wgpu::RenderPipeline {
-    let shader = passes.shader(device, &VISIBILITY);
-    let targets: Vec<_> = formats.iter().map(|&format| Some(format.into())).collect();
-    device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some("visibility"),
-        layout: None,
-        vertex: wgpu::VertexState {
-            module: &shader,
-            entry_point: Some(vertex),
-            compilation_options: Default::default(),
-            buffers: &[Some(wgpu::VertexBufferLayout {
-                array_stride: size_of::<ProxyVertex>() as u64,
-                step_mode: wgpu::VertexStepMode::Vertex,
-                attributes: &wgpu::vertex_attr_array![0 => Float32x2, 1 => Uint32],
-            })],
-        },
-        // Both sides are seen: open panels have an inside.
-        primitive: Default::default(),
-        // Reversed depth: near/distance, so the greater is the nearer.
-        depth_stencil: Some(wgpu::DepthStencilState {
-            format: DEPTH_FORMAT,
-            depth_write_enabled: Some(true),
-            depth_compare: Some(wgpu::CompareFunction::Greater),
-            stencil: Default::default(),
-            bias: Default::default(),
-        }),
-        multisample: Default::default(),
-        fragment: Some(wgpu::FragmentState {
-            module: &shader,
-            entry_point: Some(fragment),
-            compilation_options: Default::default(),
-            targets: &targets,
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
+    let layout = wgpu::VertexBufferLayout {
+        array_stride: size_of::<ProxyVertex>() as u64,
+        step_mode: wgpu::VertexStepMode::Vertex,
+        attributes: &wgpu::vertex_attr_array![0 => Float32x2, 1 => Uint32],
+    };
+    let drawing = Drawing {
+        module: &VISIBILITY,
+        entries: [vertex, fragment],
+        topology: wgpu::PrimitiveTopology::TriangleList,
+        layout: Some(layout),
+        formats,
+        depth: Depth::Nearest,
+    };
+    super::create(passes, device, &drawing)
 }
 
 pub fn run(
