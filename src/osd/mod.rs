@@ -5,10 +5,12 @@
 //! [`SubdivMesh::validate`](crate::mesh::SubdivMesh::validate) on its way in.
 #![allow(unsafe_code)] // the one room where the crate's `deny` is lifted
 
+mod patches;
 mod raw;
 mod reference;
 mod refiner;
 
+pub use patches::{EndCap, FarNet, FarPatch, Isolation};
 pub use reference::{Answer, Bfr, Far, Reference, ReferenceJet};
 pub use refiner::{Level, Refiner, Rule};
 
