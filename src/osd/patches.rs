@@ -61,6 +61,16 @@ pub enum FarNet {
     Gregory(Box<[DVec3; 20]>),
 }
 
+impl FarNet {
+    /// All control points.
+    pub fn points(&self) -> &[DVec3] {
+        match self {
+            Self::BSpline(points) => points,
+            Self::Gregory(points) => points.as_slice(),
+        }
+    }
+}
+
 /// A patch of OpenSubdiv's feature-adaptive refinement.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FarPatch {
