@@ -4,20 +4,8 @@ use crate::stam::Jet;
 use glam::DVec3;
 
 /// Where the 12 points of the border stand among a patch's 20, and in its Bezier net (u fastest).
-const BORDER: [(usize, usize); 12] = [
-    (0, 0),
-    (1, 1),
-    (7, 2),
-    (5, 3),
-    (2, 4),
-    (6, 7),
-    (16, 8),
-    (12, 11),
-    (15, 12),
-    (17, 13),
-    (11, 14),
-    (10, 15),
-];
+const BORDER: [(usize, usize); 12] =
+    [(0, 0), (1, 1), (7, 2), (5, 3), (2, 4), (6, 7), (16, 8), (12, 11), (15, 12), (17, 13), (11, 14), (10, 15)];
 
 /// The Bezier points inside, a corner each, counter-clockwise from (0,0).
 const INNER: [usize; 4] = [5, 6, 10, 9];

@@ -120,7 +120,8 @@ const PATTERN: &str = include_str!("../../shaders/shared/pattern.wgsl");
 const REFLECTION: &str = include_str!("../../shaders/field/reflection.wgsl");
 
 /// Rasterises the proxy.
-pub const VISIBILITY: Module = Module { name: "visibility", files: &[RECORDS, TABLES, GREGORY, LIMIT_POINT, VISIBILITY_PASS] };
+pub const VISIBILITY: Module =
+    Module { name: "visibility", files: &[RECORDS, TABLES, GREGORY, LIMIT_POINT, VISIBILITY_PASS] };
 /// What the proxy covers.
 pub const RECTANGLE: Module = Module {
     name: "rectangle",
@@ -129,7 +130,15 @@ pub const RECTANGLE: Module = Module {
 /// Exact positions, drawn as points.
 pub const POINTS: Module = Module {
     name: "points",
-    files: &[RECORDS, TABLES, GREGORY, LIMIT_POINT, VISIBILITY_PASS, FULLSCREEN, include_str!("../../shaders/points.wgsl")],
+    files: &[
+        RECORDS,
+        TABLES,
+        GREGORY,
+        LIMIT_POINT,
+        VISIBILITY_PASS,
+        FULLSCREEN,
+        include_str!("../../shaders/points.wgsl"),
+    ],
 };
 /// Exact surface per pixel.
 pub const LIMIT: Module = Module {
@@ -160,8 +169,10 @@ pub const SHADE: Module = Module {
 pub const RESOLVE: Module =
     Module { name: "resolve", files: &[FULLSCREEN, include_str!("../../shaders/resolve.wgsl")] };
 /// Limit at samples.
-pub const EVALUATE: Module =
-    Module { name: "evaluate", files: &[RECORDS, TABLES, GREGORY, LIMIT_POINT, include_str!("../../shaders/evaluate.wgsl")] };
+pub const EVALUATE: Module = Module {
+    name: "evaluate",
+    files: &[RECORDS, TABLES, GREGORY, LIMIT_POINT, include_str!("../../shaders/evaluate.wgsl")],
+};
 
 /// Samples solved on the host.
 pub const SPECKS: Module = Module { name: "specks", files: &[CERTIFICATE, include_str!("../../shaders/specks.wgsl")] };

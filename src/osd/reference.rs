@@ -164,7 +164,10 @@ impl Far {
         // SAFETY: the handle is live; the arrays are sized as it says itself.
         check(unsafe { raw::osd_far_patches(self.0.as_ptr(), records.as_mut_ptr(), flat.as_mut_ptr()) })?;
         let mut rest = points.as_slice();
-        Ok(records.iter().map(|record| FarPatch::new(record, rest.split_off(..record.points as usize).unwrap_or_default())).collect())
+        Ok(records
+            .iter()
+            .map(|record| FarPatch::new(record, rest.split_off(..record.points as usize).unwrap_or_default()))
+            .collect())
     }
 
     fn sizes(&self) -> raw::osd_far_sizes {

@@ -75,7 +75,8 @@ fn compare(mesh: &SubdivMesh, isolation: Isolation, end_cap: EndCap, worst: &mut
         let points = patch.net.points();
         let size = points.iter().map(|p| p.distance(points[0])).fold(0.0, f64::max);
         let [du, dv] = [theirs.du, theirs.dv].map(|d| d.length());
-        if theirs.du.cross(theirs.dv).length() / du.max(dv) > 20.0 * 2f64.powi(-24) * size / NORMAL_DEGREES.to_radians() {
+        if theirs.du.cross(theirs.dv).length() / du.max(dv) > 20.0 * 2f64.powi(-24) * size / NORMAL_DEGREES.to_radians()
+        {
             worst.gpu_normals.push(angle_deg(shader.normal, theirs.normal));
         }
     }
@@ -91,7 +92,12 @@ fn judge(name: &str, worst: &mut Worst) {
         worst.position, worst.derivative, worst.gpu_position, worst.samples, worst.gregory
     );
     // Both sides sum 16 or 20 products in f64.
-    assert!(worst.position <= 1e-14 && worst.derivative <= 1e-13, "{name}: {:e} {:e}", worst.position, worst.derivative);
+    assert!(
+        worst.position <= 1e-14 && worst.derivative <= 1e-13,
+        "{name}: {:e} {:e}",
+        worst.position,
+        worst.derivative
+    );
     assert!(worst.gpu_position <= POSITION, "{name}: {:e}", worst.gpu_position);
     assert!(normal <= NORMAL_DEGREES, "{name}: {normal:e}");
     // At a pole of 64 slivers f32 tells one in twelve.

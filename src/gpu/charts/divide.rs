@@ -80,7 +80,8 @@ impl<'a> Divider<'a> {
     fn gregory(&mut self, patch: &Gregory, origin: [f64; 2], size: f64, owed: [u8; 2]) {
         /// Samples by which the bicubic may be off: small against [`BAND`], so that neighbours leave no gap.
         const TOLERANCE: f64 = 0.25 * BAND;
-        let piece = Piece::through(|[u, v]| patch.position([origin[0] + u * size, origin[1] + v * size]), origin, size, owed);
+        let piece =
+            Piece::through(|[u, v]| patch.position([origin[0] + u * size, origin[1] + v * size]), origin, size, owed);
         let error = piece.error(self.lens, |uv| patch.position(uv));
         if error <= TOLERANCE || size < 0.5f64.powi(DEEPEST as i32) {
             return self.cut(&mut { piece });
