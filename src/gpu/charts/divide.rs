@@ -57,44 +57,48 @@ impl<'a> Divider<'a> {
                 let lens = self.lens;
                 let patch = patch.mapped(|p| lens.project(p), |v| lens.turn(v));
                 let owed = levels.map(|own| self.level.saturating_sub(own));
-                if self.sees(patch.hull(), 0.0) {
-                    self.gregory(&patch, [0.0; 2], 1.0, owed);
+                if self.sees(patch.hull()) {
+                    // What 4 x 4 sums of 16 products are off, and the weights of the bicubic through them make of that.
+                    let rounding = 64.0 * f64::EPSILON * patch.hull().fold(DVec3::ZERO, |most, p| most.max(p.abs()));
+                    self.gregory(&patch, rounding, [0.0; 2], 1.0, owed);
                 }
             }
         }
     }
 
-    /// Whether the tile may see anything that lies within `margin` samples of a hull.
-    fn sees(&self, hull: impl Iterator<Item = DVec3> + Clone, margin: f64) -> bool {
+    /// Whether the tile may see anything of what is in a hull.
+    fn sees(&self, hull: impl Iterator<Item = DVec3> + Clone) -> bool {
         match seen(self.lens, hull) {
             Seen::No => false,
             Seen::Straddles => true,
             Seen::Within(bounds) => {
-                let samples = bounds.widened(margin).samples(self.lens);
+                let samples = bounds.samples(self.lens);
                 samples.iter().all(|range| !range.is_empty()) && !self.hides(&bounds, &samples)
             }
         }
     }
 
-    /// A square of a projected Gregory patch: quarters until each is as good as bicubic.
-    fn gregory(&mut self, patch: &Gregory, origin: [f64; 2], size: f64, owed: [u8; 2]) {
+    /// A square of a projected Gregory patch: quarters until each is as good as bicubic, but for rounding.
+    fn gregory(&mut self, patch: &Gregory, rounding: DVec3, origin: [f64; 2], size: f64, owed: [u8; 2]) {
         /// Samples by which the bicubic may be off: small against [`BAND`], so that neighbours leave no gap.
         const TOLERANCE: f64 = 0.25 * BAND;
         let piece =
             Piece::through(|[u, v]| patch.position([origin[0] + u * size, origin[1] + v * size]), origin, size, owed);
-        let error = piece.error(self.lens, |uv| patch.position(uv));
-        if error <= TOLERANCE || size < 0.5f64.powi(DEEPEST as i32) {
+        let gap = piece.gap(|uv| patch.position(uv));
+        let is_bicubic = piece.error(self.lens, &gap) <= TOLERANCE || gap.largest().cmple(rounding).all();
+        if is_bicubic || size < 0.5f64.powi(DEEPEST as i32) {
             return self.cut(&mut { piece });
         }
-        // Twice, for the error is measured at some points only. At the near plane it cannot be, but is small from here on.
-        let margin = if error.is_finite() { 2.0 * error } else { 0.0 };
-        if (error.is_finite() || size <= 0.125) && !self.sees(piece.points(), margin) {
+        // Twice, for the gap is measured at some points only.
+        let reach = 2.0 * gap.largest();
+        let around = |p: DVec3| box_corners([p - reach, p + reach]);
+        if !self.sees(piece.points().flat_map(around)) {
             return;
         }
         let half = 0.5 * size;
         for [i, j] in [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]] {
             let origin = [origin[0] + i * half, origin[1] + j * half];
-            self.gregory(patch, origin, half, owed.map(|levels| levels.saturating_sub(1)));
+            self.gregory(patch, rounding, origin, half, owed.map(|levels| levels.saturating_sub(1)));
         }
     }
 
@@ -244,14 +248,17 @@ fn centre(sample: [u32; 2]) -> [f64; 2] {
 }
 
 /// Whether the tile may see anything of what is in a box.
-pub(super) fn sees_box(lens: &Lens, [low, high]: [DVec3; 2]) -> bool {
-    let corner = |i: usize| {
-        let pick = |bit: usize, a: f64, b: f64| if i >> bit & 1 == 0 { a } else { b };
-        lens.project(DVec3::new(pick(0, low.x, high.x), pick(1, low.y, high.y), pick(2, low.z, high.z)))
-    };
-    match seen(lens, (0..8).map(corner)) {
+pub(super) fn sees_box(lens: &Lens, bounds: [DVec3; 2]) -> bool {
+    match seen(lens, box_corners(bounds).map(|corner| lens.project(corner))) {
         Seen::No => false,
         Seen::Straddles => true,
         Seen::Within(bounds) => bounds.samples(lens).iter().all(|range| !range.is_empty()),
     }
+}
+
+fn box_corners([low, high]: [DVec3; 2]) -> impl Iterator<Item = DVec3> + Clone {
+    (0..8).map(move |i| {
+        let pick = |bit: usize, a: f64, b: f64| if i >> bit & 1 == 0 { a } else { b };
+        DVec3::new(pick(0, low.x, high.x), pick(1, low.y, high.y), pick(2, low.z, high.z))
+    })
 }

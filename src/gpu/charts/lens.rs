@@ -69,6 +69,13 @@ impl Lens {
         than - depth > 1e-9 * (self.far - self.near) + 1e-15 * than.abs()
     }
 
+    /// Samples aside that are as long as 1 in depth, where the weight is 1.
+    pub fn samples_of_depth(&self) -> f64 {
+        // In perspective the rows hold a part along the depth as well.
+        let [x, _, forward] = &self.rows;
+        x.cross(*forward).length()
+    }
+
     /// Where in the picture a projected point is seen, in samples.
     pub fn seen(&self, [x, y, depth]: [f64; 3]) -> [f64; 2] {
         let weight = self.weight(depth);

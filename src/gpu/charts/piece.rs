@@ -3,7 +3,7 @@
 use super::bounds::{Line, Seen, seen_net};
 use super::frame::{Flat, Frame};
 use super::lens::Lens;
-use super::net::{Net, Row, bezier_of_spline, bezier_through, combined, dot, greatest, halve, max, row};
+use super::net::{Net, Row, bezier_of_spline, bezier_through, combined, dot, greatest, halve, max, min, row};
 use super::solve::POINT;
 use glam::DVec3;
 
@@ -52,19 +52,20 @@ impl Piece {
     }
 
     /// How far a surface, given by the patch's parameters, is from the piece at nine points between those of
-    /// [`through`](Self::through), in samples; infinite where it reaches the near plane.
-    pub fn error(&self, lens: &Lens, surface: impl Fn([f64; 2]) -> DVec3) -> f64 {
+    /// [`through`](Self::through).
+    pub fn gap(&self, surface: impl Fn([f64; 2]) -> DVec3) -> Gap {
         const BETWEEN: [f64; 3] = [1.0 / 6.0, 0.5, 5.0 / 6.0];
-        let mut error = 0.0;
-        for own in BETWEEN.iter().flat_map(|&v| BETWEEN.map(|u| [u, v])) {
-            let (a, b) = (surface(self.to_patch(own)).to_array(), self.at(own).value);
-            if lens.perspective && a[2].min(b[2]) < lens.near {
-                return f64::INFINITY;
-            }
-            let [a, b] = [a, b].map(|p| lens.seen(p));
-            error = max(error, max((a[0] - b[0]).abs(), (a[1] - b[1]).abs()));
-        }
-        error
+        Gap(std::array::from_fn(|k| {
+            let own = [BETWEEN[k % 3], BETWEEN[k / 3]];
+            surface(self.to_patch(own)) - DVec3::from_array(self.at(own).value)
+        }))
+    }
+
+    /// Samples that a gap is at most, wherever the tile sees a point of the piece: where the piece is nearest. What it is off in
+    /// depth counts like what it is off aside.
+    pub fn error(&self, lens: &Lens, gap: &Gap) -> f64 {
+        let nearest = self.points().fold(f64::INFINITY, |near, p| min(near, p.z)) - gap.largest().z;
+        gap.samples(lens) / lens.weight(max(nearest, lens.near))
     }
 
     /// The control points, projected.
@@ -198,6 +199,30 @@ impl Piece {
     /// Parameters of the patch at the piece's own.
     pub fn to_patch(&self, [u, v]: [f64; 2]) -> [f64; 2] {
         [self.origin[0] + u * self.size[0], self.origin[1] + v * self.size[1]]
+    }
+}
+
+/// What a surface is off a piece at some points: x and y times weight, and depth.
+#[derive(Debug)]
+pub(super) struct Gap([DVec3; 9]);
+
+impl Gap {
+    /// The most in each coordinate.
+    pub fn largest(&self) -> DVec3 {
+        self.0.iter().fold(DVec3::ZERO, |most, d| most.max(d.abs()))
+    }
+
+    /// The most that it is in samples where the weight is 1: x - p weight for every p that is a sample of the tile.
+    fn samples(&self, lens: &Lens) -> f64 {
+        let mut most = 0.0;
+        for d in &self.0 {
+            let weight = lens.weight_change(d.z);
+            for (axis, x) in [d.x, d.y].into_iter().enumerate() {
+                most = max(most, max(x.abs(), (x - lens.size[axis] * weight).abs()));
+            }
+            most = max(most, d.z.abs() * lens.samples_of_depth());
+        }
+        most
     }
 }
 
