@@ -6,7 +6,9 @@
 //! the field f (Ulmet 2003, Theorem RC). The exact surface has the value f at that place, the gradient g by pixels, and appears e
 //! pixels beside the pixel; so where the other picture has the value f', the exact one has f - g.e, and the line of the value f' is
 //! |d| / |g| pixels away, d = f' - f + g.e, to first order. Near points where g vanishes that says nothing; to second order, with h
-//! the second derivative of f along g, it is the root of |g| s + |h| s^2 / 2 = |d|.
+//! the second derivative of f along g, it is the least root s > 0 of |g| s + sign(d) h s^2 / 2 = |d|. Where the field turns back
+//! before it has the value, there is no such line: sqrt(2 |d| / |h|), which the root goes over into, says how far it would be from
+//! the turn of a field that bends as much.
 //!
 //! # Practice
 //! [`Exact`] holds the surface and what the view shows of it; [`Exact::compare`] holds any picture of the same view
@@ -105,9 +107,16 @@ impl Line {
 
     /// Pixels from a point `aside` of here, in pixels, to where the field has this value.
     fn displacement(&self, aside: DVec2, value: f64) -> f64 {
-        let difference = (value - self.value - self.gradient.dot(aside)).abs();
-        let root = (self.gradient.length_squared() + 2.0 * self.bend.abs() * difference).sqrt();
-        if difference == 0.0 { 0.0 } else { 2.0 * difference / (self.gradient.length() + root) }
+        let difference = value - self.value - self.gradient.dot(aside);
+        if difference == 0.0 {
+            return 0.0;
+        }
+        let (slope, bend, height) = (self.gradient.length(), self.bend * difference.signum(), difference.abs());
+        let discriminant = slope * slope + 2.0 * bend * height;
+        match discriminant >= 0.0 {
+            true => 2.0 * height / (slope + discriminant.sqrt()),
+            false => (2.0 * height / bend.abs()).sqrt(),
+        }
     }
 }
 
@@ -155,5 +164,29 @@ impl Exact<'_> {
             Some(line.displacement(aside, image.field[i]?.x).min(farthest))
         };
         Difference { normal_deg: angle_deg(normal, exact.normal), lines_px: lines().unwrap_or(f64::NAN) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// On s + h s^2 / 2, where a line is is known: nearer where the field steepens, farther where it flattens.
+    #[test]
+    fn lines_are_where_a_parabola_has_their_value() {
+        for bend in [-0.4, 0.0, 0.4] {
+            let line = Line { value: 7.0, gradient: DVec2::new(0.6, 0.8), bend };
+            for s in [-2.0, -0.5, 1e-9, 0.5, 2.0f64] {
+                let found = line.displacement(DVec2::ZERO, 7.0 + s + 0.5 * bend * s * s);
+                assert!((found - s.abs()).abs() < 1e-6, "bend {bend}: {s} {found}");
+            }
+        }
+        // It turns back at 2.5, at a height of 1.25; from there on it goes on without a step.
+        let line = Line { value: 0.0, gradient: DVec2::X, bend: -0.4 };
+        let [before, beyond] = [1.25 - 1e-9, 1.25 + 1e-9].map(|value| line.displacement(DVec2::ZERO, value));
+        assert!((before - 2.5).abs() < 1e-3 && (beyond - 2.5).abs() < 1e-3, "{before} {beyond}");
+        // Nothing bends and nothing slopes: there is no such line.
+        let flat = Line { value: 0.0, gradient: DVec2::ZERO, bend: 0.0 };
+        assert_eq!([flat.displacement(DVec2::X, 0.0), flat.displacement(DVec2::X, 1.0)], [0.0, f64::INFINITY]);
     }
 }
