@@ -64,6 +64,9 @@ pub(super) struct VerifyArgs {
     /// Size of the view that the fragment tier checks pixel by pixel
     #[arg(long, value_name = "WxH", default_value = "512x512", value_parser = size)]
     pub size: [u32; 2],
+    /// The conformance test
+    #[command(flatten)]
+    pub conformance: super::conformance::ConformanceArgs,
 }
 
 #[derive(Debug, Args)]

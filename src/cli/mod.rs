@@ -2,11 +2,13 @@
 
 mod account;
 mod args;
+mod conformance;
 mod eval;
 mod frames;
 mod info;
 mod render;
 mod rig;
+mod rows;
 mod settings;
 mod verify;
 

@@ -1,7 +1,7 @@
 //! `verify`: the regression against OpenSubdiv.
 
 use super::args::VerifyArgs;
-use super::{Failure, load, progress, write_out};
+use super::{Failure, conformance, load, progress, write_out};
 
 use crate::gpu::Gpu;
 use crate::output::check_writable;
@@ -10,12 +10,19 @@ use std::path::Path;
 
 pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
     args.json.as_deref().map_or(Ok(()), check_writable)?;
+    conformance::check(args)?;
     let paths: Vec<Option<&Path>> = match args.meshes[..] {
         [] => vec![None],
         _ => args.meshes.iter().map(|path| Some(path.as_path())).collect(),
     };
     // Every mesh is read before the first is verified: a typing error should not cost minutes.
     let meshes = paths.into_iter().map(load).collect::<Result<Vec<_>, _>>()?;
+    if args.conformance.asked() {
+        return match conformance::run(args, &meshes[0])? {
+            Some(report) => finish(args, &report),
+            None => Ok(()),
+        };
+    }
     let gpu = Gpu::new()?;
     let mut reports = Vec::new();
     for (i, mesh) in meshes.iter().enumerate() {
@@ -28,9 +35,13 @@ pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
         write_out(None, report.to_string().as_bytes())?;
         reports.push(report);
     }
-    let report = Report::new(reports);
+    finish(args, &Report::new(reports))
+}
+
+/// Writes what was asked for and says the verdict.
+fn finish(args: &VerifyArgs, report: &Report) -> Result<(), Failure> {
     if let Some(path) = &args.json {
-        let mut text = serde_json::to_vec_pretty(&report).map_err(std::io::Error::from)?;
+        let mut text = serde_json::to_vec_pretty(report).map_err(std::io::Error::from)?;
         text.push(b'\n');
         write_out(Some(path), &text)?;
     }

@@ -36,7 +36,7 @@ pub(super) struct Check {
 
 impl Check {
     /// Part of what is allowed that is used; infinite for NaN, which nothing allows.
-    fn share(self) -> f64 {
+    pub fn share(self) -> f64 {
         let Self { error, allowed } = self;
         match error <= allowed {
             _ if allowed.is_infinite() => 0.0,

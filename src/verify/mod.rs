@@ -5,6 +5,7 @@
 //! the samples are kept apart with the reason ([`KnownWrong`]) and held to what any wrong reference can be off.
 
 mod bin;
+pub mod conformance;
 mod dyadic;
 mod endcap;
 mod fragment;
@@ -61,7 +62,19 @@ struct Subject<'a> {
     ours: &'a dyn Fn(Jet) -> Jet,
 }
 
-impl Subject<'_> {
+impl<'a> Subject<'a> {
+    /// Refuses what cannot be judged.
+    fn new(mesh: &'a SubdivMesh, surface: &'a LimitSurface) -> Result<Self, VerifyError> {
+        if surface.patches().is_empty() {
+            return Err(VerifyError::NoSurface);
+        }
+        let (low, high) = mesh.bounds().unwrap_or_default();
+        let extent = (high - low).max_element();
+        if extent > 0.0 && extent < LEAST_EXTENT {
+            return Err(VerifyError::TooSmall { extent });
+        }
+        Ok(Self { mesh, surface, rounding: Rounding::of(mesh), ours: &|jet| jet })
+    }
     /// Ptex faces to sample: all of them, or evenly spread ones so that `per_face` samples each stay below `budget`.
     fn faces(&self, per_face: usize, budget: usize) -> impl Iterator<Item = u32> + use<> {
         let count = self.surface.ptex_count();
@@ -104,15 +117,7 @@ impl Subject<'_> {
 /// The mesh is refused, has no surface or is too small to judge; a reference evaluator fails, or the GPU does.
 pub fn verify(mesh: &SubdivMesh, gpu: &Gpu, size: [u32; 2]) -> Result<MeshReport, VerifyError> {
     let surface = LimitSurface::new(mesh)?;
-    if surface.patches().is_empty() {
-        return Err(VerifyError::NoSurface);
-    }
-    let (low, high) = mesh.bounds().unwrap_or_default();
-    let extent = (high - low).max_element();
-    if extent > 0.0 && extent < LEAST_EXTENT {
-        return Err(VerifyError::TooSmall { extent });
-    }
-    let subject = Subject { mesh, surface: &surface, rounding: Rounding::of(mesh), ours: &|jet| jet };
+    let subject = Subject::new(mesh, &surface)?;
     let bins = tiers(&subject, gpu, size)?;
     Ok(MeshReport::new(mesh, &surface, bins))
 }

@@ -1,6 +1,7 @@
 //! The report: what JSON and the terminal show.
 
 use super::bin::{Bin, Bins, Key, Sample};
+use super::conformance::Results;
 use crate::mesh::SubdivMesh;
 use crate::patch::PatchKind;
 use crate::stam::LimitSurface;
@@ -14,7 +15,7 @@ const PERCENTILE: f64 = 0.9999;
 /// One row: a tier, a reference and a patch kind.
 #[derive(Debug, Clone, Serialize)]
 pub struct Tier {
-    /// `vertex`, `dyadic`, `regular`, `fragment` or `endcap`.
+    /// `vertex`, `dyadic`, `regular`, `fragment` or `endcap`; `results` for another program's answers.
     pub tier: &'static str,
     /// Patch kind.
     pub kind: &'static str,
@@ -78,6 +79,9 @@ pub struct MeshReport {
     pub tiers: Vec<Tier>,
     /// Where the reference is wrong.
     pub reference_known_wrong: Vec<KnownWrong>,
+    /// What was found about another program's answers; absent where the tiers ran.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub results: Option<Results>,
 }
 
 /// The report of a run over meshes.
@@ -157,6 +161,7 @@ impl MeshReport {
             pass: tiers.iter().chain(reference_known_wrong.iter().map(|known| &known.row)).all(|row| row.pass),
             tiers,
             reference_known_wrong,
+            results: None,
         }
     }
 }
