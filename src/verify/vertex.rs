@@ -1,6 +1,8 @@
 //! Tier `vertex`: the limit at refined vertices against OpenSubdiv's limit masks.
 
-use super::bin::{Bins, Check, Difference, Key, Normal, Sample};
+use super::bin::Bins;
+use super::difference::{Check, Difference, Normal, Sample};
+use super::key::{Against, Key, TierName};
 use super::{NORMAL_LIMIT, Subject, VerifyError, rounding};
 use crate::osd::{Level, Refiner, Rule};
 use glam::DVec3;
@@ -22,14 +24,20 @@ pub(super) fn run(subject: &Subject<'_>, bins: &mut Bins) -> Result<(), VerifyEr
     let last_points = &points[points.len() - last.vertex_count()..];
     let [limits, first, second] = refiner.limit(last_points)?;
     let traits = Traits::of(last, last_points);
-    for (vertex, sample) in locations(&levels) {
+    let locations = locations(&levels);
+    bins.fill(locations.len(), |bins, i| {
+        let (vertex, sample) = locations[i];
         let known_wrong = traits.known_wrong(last, vertex);
         let ours = subject.evaluate(sample);
-        let kind = ours.map(|(patch, _)| subject.surface.kind(patch));
-        let key = Key { tier: "vertex", reference: "limit masks", kind, known_wrong };
+        let patch = ours.map(|(patch, _)| patch);
+        let key = Key {
+            known_wrong,
+            ..Key::new(TierName::Vertex, Against::LimitMasks, patch.and_then(|patch| subject.kind(patch)))
+        };
+        let place = subject.place(sample, patch);
         let Some((_, jet)) = ours else {
-            bins.mismatch(key, sample);
-            continue;
+            bins.mismatch(key, place);
+            return;
         };
         let rounding = &subject.rounding;
         let allowed = match known_wrong {
@@ -47,8 +55,8 @@ pub(super) fn run(subject: &Subject<'_>, bins: &mut Bins) -> Result<(), VerifyEr
             _ => Normal::Unknown,
         };
         let error = jet.position.distance(limits[vertex]) / rounding.unit;
-        bins.add(key, sample, Difference { position: Check { error, allowed }, normal, derivative: None });
-    }
+        bins.add(key, place, Difference { position: Check { error, allowed }, normal, derivative: None });
+    });
     Ok(())
 }
 

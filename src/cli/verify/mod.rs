@@ -28,16 +28,12 @@ pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
         write_out(None, report.to_string().as_bytes())?;
         reports.push(report);
     }
-    let report = Report::new(reports);
+    let report = Report::new(args.size, reports, Vec::new(), false);
     if let Some(path) = &args.json {
         let mut text = serde_json::to_vec_pretty(&report).map_err(std::io::Error::from)?;
         text.push(b'\n');
         write_out(Some(path), &text)?;
     }
-    let verdict = if report.pass { "pass" } else { "FAIL" };
-    let count = report.meshes.len();
-    let meshes = if count == 1 { "mesh" } else { "meshes" };
-    let summary = format!("{verdict}: {count} {meshes} against OpenSubdiv {}\n", report.opensubdiv);
-    write_out(None, summary.as_bytes())?;
+    write_out(None, format!("{}\n", report.verdict()).as_bytes())?;
     if report.pass { Ok(()) } else { Err(Failure::Check) }
 }

@@ -1,0 +1,41 @@
+//! The references that several tiers ask.
+
+use super::{Subject, VerifyError};
+use crate::osd::{Far, LimitStencils, Location, MAX_ISOLATION};
+
+/// OpenSubdiv's exact evaluators, at the deepest isolation.
+#[derive(Debug)]
+pub(super) struct References {
+    pub stencils: LimitStencils,
+    pub far: Far,
+}
+
+impl References {
+    pub fn new(subject: &Subject<'_>) -> Result<Self, VerifyError> {
+        let (stencils, far) =
+            rayon::join(|| LimitStencils::new(subject.mesh, MAX_ISOLATION), || Far::new(subject.mesh, MAX_ISOLATION));
+        Ok(Self { stencils: stencils?, far: far? })
+    }
+}
+
+/// Faces that limit stencils are made for, in each set of samples: a face takes a millisecond, and they say what Far's
+/// patches say at every sample, in another way.
+const STENCIL_FACES: usize = 2048;
+
+/// The samples of evenly spread faces, no more than limit stencils are made for, and what goes with them. Samples come grouped
+/// by face.
+pub(super) fn thinned<T: Clone>(samples: &[Location], with: &[T]) -> (Vec<Location>, Vec<T>) {
+    let faces = samples.chunk_by(|a, b| a.0 == b.0).count();
+    let stride = faces.div_ceil(STENCIL_FACES).max(1);
+    let mut first = 0;
+    let (mut kept, mut kept_with) = (Vec::new(), Vec::new());
+    for (i, face) in samples.chunk_by(|a, b| a.0 == b.0).enumerate() {
+        let range = first..first + face.len();
+        first = range.end;
+        if i % stride == 0 {
+            kept.extend_from_slice(face);
+            kept_with.extend_from_slice(&with[range]);
+        }
+    }
+    (kept, kept_with)
+}
