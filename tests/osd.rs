@@ -5,6 +5,8 @@ use catoptric::osd::{Answer, Bfr, Error, Far, LimitStencils, Location, Reference
 use glam::DVec3;
 use std::path::Path;
 
+mod common;
+
 fn mesh(name: &str) -> SubdivMesh {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes").join(name).with_extension("obj");
     mesh::read(&path).expect("a test mesh is valid")
@@ -187,12 +189,14 @@ fn references_agree_on_derivatives_of_n_gons() {
 /// same patches in other arithmetic.
 #[test]
 fn limit_stencils_are_the_patches_as_sums_of_control_points() {
-    for name in ["cube", "n_gons", "hole", "dart", "semi_sharp_crease", "boundary_none", "chaikin"] {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes").join(name).with_extension("obj");
-        let mesh = if path.exists() { mesh(name) } else { continue };
+    for mesh in common::meshes() {
+        let name = &mesh.name;
         let faces = mesh.face_sizes.iter().map(|&n| if n == 4 { 1 } else { n }).sum::<u32>();
         let at = [[0.31, 0.72], [0.0, 0.0], [1.0, 0.5], [1e-4, 2e-4], [0.999, 0.2]];
-        let samples: Vec<Location> = (0..faces).flat_map(|face| at.map(|[u, v]| (face, u, v))).collect();
+        // One at a time is what takes long.
+        let stride = faces.div_ceil(20) as usize;
+        let samples: Vec<Location> =
+            (0..faces).step_by(stride).flat_map(|face| at.map(|[u, v]| (face, u, v))).collect();
         let far = Far::new(&mesh, 10).and_then(|far| far.evaluate(&samples)).expect("it evaluates");
         let stencils = LimitStencils::new(&mesh, 10).expect("it is made");
         let unit = mesh.diagonal();
@@ -210,7 +214,8 @@ fn limit_stencils_are_the_patches_as_sums_of_control_points() {
             let sum = |k: usize| -> DVec3 {
                 stencil.vertices.iter().zip(&stencil.weights).map(|(&v, w)| w[k] * mesh.points[v as usize]).sum()
             };
-            assert!(sum(0).distance(ours.position) < 1e-14 * unit && sum(1).distance(ours.du) < allowed);
+            let off = [sum(0).distance(ours.position) / unit, sum(1).distance(ours.du) / allowed];
+            assert!(off[0] < 1e-14 && off[1] < 1.0, "{name} {sample:?}: {off:?}");
             assert!((stencil.weights.iter().map(|w| w[0]).sum::<f64>() - 1.0).abs() < 1e-14);
         }
     }

@@ -5,11 +5,13 @@
 //! [`SubdivMesh::validate`](crate::mesh::SubdivMesh::validate) on its way in.
 #![allow(unsafe_code)] // the one room where the crate's `deny` is lifted
 
+mod patches;
 mod raw;
 mod reference;
 mod refiner;
 mod stencils;
 
+pub use patches::{EndCap, FarNet, FarPatch, Isolation};
 pub use reference::{Answer, Bfr, Far, Location, Reference, ReferenceJet};
 pub use refiner::{Level, Refiner, Rule};
 pub use stencils::{LimitStencils, Stencil};

@@ -1,6 +1,6 @@
 //! The regression references: OpenSubdiv's own evaluators of the limit surface.
 
-use super::{Descriptor, Error, check, int, raw};
+use super::{Descriptor, EndCap, Error, FarPatch, Isolation, check, int, raw};
 use crate::mesh::SubdivMesh;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -135,18 +135,45 @@ impl Far {
     /// # Errors
     /// The mesh is not valid, `isolation` is out of range, or OpenSubdiv reports an error.
     pub fn new(mesh: &SubdivMesh, isolation: u32) -> Result<Self, Error> {
+        Self::with(mesh, Isolation::uniform(isolation), EndCap::Gregory)
+    }
+
+    /// The same with another isolation of smooth features, and other end caps.
+    ///
+    /// # Errors
+    /// As [`Far::new`].
+    pub fn with(mesh: &SubdivMesh, isolation: Isolation, end_cap: EndCap) -> Result<Self, Error> {
         let descriptor = Descriptor::new(mesh)?;
         let mut handle = std::ptr::null_mut();
+        let [sharp, smooth] = [isolation.sharp, isolation.smooth].map(|level| level.min(i32::MAX as u32) as i32);
+        let end_cap = match end_cap {
+            EndCap::Gregory => raw::OSD_END_CAP_GREGORY,
+            EndCap::BSpline => raw::OSD_END_CAP_BSPLINE,
+        };
         // SAFETY: the descriptor outlives the call, which copies it; its indices are validated.
         check(unsafe {
-            raw::osd_far_create(
-                &descriptor.as_raw(),
-                descriptor.points.as_ptr(),
-                isolation.min(i32::MAX as u32) as i32,
-                &mut handle,
-            )
+            raw::osd_far_create(&descriptor.as_raw(), descriptor.points.as_ptr(), sharp, smooth, end_cap, &mut handle)
         })?;
         Ok(Self(NonNull::new(handle).expect("a table comes with status OK")))
+    }
+
+    /// The patches and their control points, phantom points included: 16 of a bicubic B-spline, u fastest, or the 20 of a
+    /// Gregory patch in the order of `Far::PatchDescriptor`.
+    ///
+    /// # Errors
+    /// OpenSubdiv reports an error.
+    pub fn patches(&self) -> Result<Vec<FarPatch>, Error> {
+        let sizes = self.sizes();
+        let mut records = vec![raw::osd_far_patch::default(); sizes.patches as usize];
+        let mut points = vec![DVec3::ZERO; sizes.control_points as usize];
+        let flat: &mut [f64] = bytemuck::cast_slice_mut(&mut points);
+        // SAFETY: the handle is live; the arrays are sized as it says itself.
+        check(unsafe { raw::osd_far_patches(self.0.as_ptr(), records.as_mut_ptr(), flat.as_mut_ptr()) })?;
+        let mut rest = points.as_slice();
+        Ok(records
+            .iter()
+            .map(|record| FarPatch::new(record, rest.split_off(..record.points as usize).unwrap_or_default()))
+            .collect())
     }
 
     /// Evaluates samples (ptex face, u, v), u and v 0 to 1, on all threads. A face that does not exist has no answer.
