@@ -13,6 +13,7 @@ mod failures;
 mod fragment;
 mod histogram;
 mod key;
+mod plant;
 mod references;
 mod regular;
 mod report;
@@ -24,6 +25,7 @@ pub use clock::Timing;
 pub use difference::Sample;
 pub use failures::{FailedPatch, Failures};
 pub use histogram::Histogram;
+pub use plant::Plant;
 pub use report::{Histograms, KnownWrong, MeshReport, Refused, Report, Tier};
 
 use crate::gpu::{Gpu, GpuError};
@@ -56,6 +58,16 @@ pub enum VerifyError {
     /// A reference evaluator failed.
     #[error(transparent)]
     Osd(#[from] crate::osd::Error),
+    /// The mesh has not what an error was to be planted in.
+    #[error("{what} {index} cannot be planted: the mesh has {count}")]
+    Plant {
+        /// What it lacks.
+        what: &'static str,
+        /// Which was asked for.
+        index: usize,
+        /// How many there are.
+        count: usize,
+    },
     /// The fragment tier needs an adapter.
     #[error(transparent)]
     Gpu(#[from] GpuError),
@@ -73,9 +85,20 @@ struct Subject<'a> {
     /// Every jet of ours passes through it before it is judged, those of the GPU too. The identity, but for the test
     /// that plants errors.
     ours: &'a (dyn Fn(Jet) -> Jet + Sync),
+    /// [`Plant::Swap`].
+    swapped: bool,
 }
 
-impl Subject<'_> {
+impl<'a> Subject<'a> {
+    fn new(mesh: &'a SubdivMesh, surface: &'a LimitSurface) -> Self {
+        Self { mesh, surface, rounding: Rounding::of(mesh), ours: &|jet| jet, swapped: false }
+    }
+
+    /// Parameters at which we evaluate.
+    fn parameters(&self, [u, v]: [f64; 2]) -> [f64; 2] {
+        if self.swapped { [v, u] } else { [u, v] }
+    }
+
     /// Ptex faces to sample: all of them, or evenly spread ones so that `per_face` samples each stay below `budget`.
     fn faces(&self, per_face: usize, budget: usize) -> impl Iterator<Item = u32> + use<> {
         let count = self.surface.ptex_count();
@@ -85,7 +108,9 @@ impl Subject<'_> {
 
     /// Our patch and jet, derivatives by the ptex parameters; `None` in a hole.
     fn evaluate(&self, at: Sample) -> Option<(usize, Jet)> {
-        let (patch, jet) = self.surface.evaluate_ptex(at.face, [at.u, at.v])?;
+        let (patch, jet) = self.surface.evaluate_ptex(at.face, self.parameters([at.u, at.v]))?;
+        // An error is to be found where it shows.
+        let patch = if self.swapped { self.surface.locate(at.face, [at.u, at.v])?.0 } else { patch };
         Some((patch, (self.ours)(jet)))
     }
 
@@ -96,7 +121,7 @@ impl Subject<'_> {
 
     /// The f64 jet that a shader's is compared with, at parameters of the patch.
     fn evaluate_patch(&self, patch: usize, uv: [f32; 2]) -> Jet {
-        self.surface.evaluate(patch, uv.map(f64::from))
+        self.surface.evaluate(patch, self.parameters(uv.map(f64::from)))
     }
 
     fn kind(&self, patch: usize) -> Option<PatchKind> {
@@ -135,7 +160,29 @@ impl Subject<'_> {
 /// # Errors
 /// The mesh is refused, has no surface or is too small to judge; a reference evaluator fails, or the GPU does.
 pub fn verify(mesh: &SubdivMesh, gpu: &Gpu, size: [u32; 2]) -> Result<MeshReport, VerifyError> {
-    let surface = LimitSurface::new(mesh)?;
+    verify_planted(mesh, gpu, size, None)
+}
+
+/// The same with an error planted in our evaluation, which must be caught: a test of the checks.
+///
+/// # Errors
+/// As [`verify`], and if the mesh has not what the error is to be planted in.
+pub fn verify_planted(
+    mesh: &SubdivMesh,
+    gpu: &Gpu,
+    size: [u32; 2],
+    plant: Option<Plant>,
+) -> Result<MeshReport, VerifyError> {
+    let surface = judgeable(mesh, plant)?;
+    let subject = Subject { swapped: plant == Some(Plant::Swap), ..Subject::new(mesh, &surface) };
+    let mut clock = Clock::default();
+    let bins = tiers(&subject, gpu, size, &mut clock)?;
+    Ok(MeshReport::new(mesh, &surface, bins, clock.steps))
+}
+
+/// Our surface of a mesh, if there is something to judge.
+fn judgeable(mesh: &SubdivMesh, plant: Option<Plant>) -> Result<LimitSurface, VerifyError> {
+    let surface = plant.map_or_else(|| Ok(LimitSurface::new(mesh)?), |plant| plant.surface(mesh))?;
     if surface.patches().is_empty() {
         return Err(VerifyError::NoSurface);
     }
@@ -144,10 +191,7 @@ pub fn verify(mesh: &SubdivMesh, gpu: &Gpu, size: [u32; 2]) -> Result<MeshReport
     if extent > 0.0 && extent < LEAST_EXTENT {
         return Err(VerifyError::TooSmall { extent });
     }
-    let subject = Subject { mesh, surface: &surface, rounding: Rounding::of(mesh), ours: &|jet| jet };
-    let mut clock = Clock::default();
-    let bins = tiers(&subject, gpu, size, &mut clock)?;
-    Ok(MeshReport::new(mesh, &surface, bins, clock.steps))
+    Ok(surface)
 }
 
 fn tiers(subject: &Subject<'_>, gpu: &Gpu, size: [u32; 2], clock: &mut Clock) -> Result<Bins, VerifyError> {
@@ -171,7 +215,7 @@ mod tests {
     /// The tiers that fail when our jets are changed.
     fn failing(mesh: &SubdivMesh, gpu: &Gpu, ours: &(dyn Fn(Jet) -> Jet + Sync)) -> Vec<&'static str> {
         let surface = LimitSurface::new(mesh).expect("the mesh is valid");
-        let subject = Subject { mesh, surface: &surface, rounding: Rounding::of(mesh), ours };
+        let subject = Subject { ours, ..Subject::new(mesh, &surface) };
         let report = MeshReport::new(
             mesh,
             &surface,
@@ -220,7 +264,7 @@ mod tests {
         let gpu = Gpu::new().expect("the fragment tier needs an adapter");
         for (theirs, ours) in [(&whole, &holed), (&holed, &whole)] {
             let surface = LimitSurface::new(ours).expect("the mesh is valid");
-            let subject = Subject { mesh: theirs, surface: &surface, rounding: Rounding::of(theirs), ours: &|jet| jet };
+            let subject = Subject::new(theirs, &surface);
             let report = MeshReport::new(
                 theirs,
                 &surface,
@@ -242,7 +286,7 @@ mod tests {
         let surface = LimitSurface::new(&mesh).expect("the mesh is valid");
         let by = DVec3::splat(mesh.diagonal());
         let ours = |jet: Jet| Jet { position: jet.position + by, ..jet };
-        let subject = Subject { mesh: &mesh, surface: &surface, rounding: Rounding::of(&mesh), ours: &ours };
+        let subject = Subject { ours: &ours, ..Subject::new(&mesh, &surface) };
         let report = MeshReport::new(
             &mesh,
             &surface,

@@ -1,39 +1,89 @@
 //! `verify`: the regression against OpenSubdiv.
 
-use super::args::VerifyArgs;
-use super::{Failure, load, progress, write_out};
+mod inputs;
+mod many;
 
+use super::args::VerifyArgs;
+use super::{Failure, write_out};
 use crate::gpu::Gpu;
 use crate::output::check_writable;
-use crate::verify::{Report, VerifyError, verify};
-use std::path::Path;
+use crate::verify::{MeshReport, Refused, Report};
+use inputs::Input;
+use many::{Job, Outcome};
+use std::path::PathBuf;
+use std::time::Instant;
 
 pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
-    args.json.as_deref().map_or(Ok(()), check_writable)?;
-    let paths: Vec<Option<&Path>> = match args.meshes[..] {
-        [] => vec![None],
-        _ => args.meshes.iter().map(|path| Some(path.as_path())).collect(),
-    };
-    // Every mesh is read before the first is verified: a typing error should not cost minutes.
-    let meshes = paths.into_iter().map(load).collect::<Result<Vec<_>, _>>()?;
+    let start = Instant::now();
+    for path in [&args.json, &args.junit].into_iter().flatten() {
+        check_writable(path)?;
+    }
+    let inputs = inputs::find(&args.meshes)?;
     let gpu = Gpu::new()?;
-    let mut reports = Vec::new();
-    for (i, mesh) in meshes.iter().enumerate() {
-        let bar = progress(format!("verifying {} ({} of {})", mesh.name, i + 1, meshes.len()));
-        let report = verify(mesh, &gpu, args.size).map_err(|error| match error {
-            VerifyError::Gpu(error) => error.into(),
-            error => Failure::of(mesh, error),
-        })?;
-        bar.finish_and_clear();
-        write_out(None, report.to_string().as_bytes())?;
-        reports.push(report);
-    }
-    let report = Report::new(args.size, reports, Vec::new(), false);
+    let job = Job { gpu: &gpu, size: args.size, plant: args.plant };
+    let show = Show { width: inputs.iter().map(|input| input.name().len()).max().unwrap_or(0), args, of: inputs.len() };
+    let (mut meshes, mut refused) = (Vec::new(), Vec::new());
+    many::run(&inputs, &job, |input, outcome| {
+        match outcome {
+            Outcome::Verified(mut report) => {
+                report.set_source(input.source().as_deref(), &show.flags());
+                if !args.timings {
+                    report.timings = None;
+                }
+                show.report(&report)?;
+                meshes.push(*report);
+            }
+            Outcome::Refused(reason) => {
+                let path = input.source().unwrap_or_default();
+                write_out(None, format!("refused  {reason}\n").as_bytes())?;
+                refused.push(Refused { path, reason });
+            }
+        }
+        Ok(())
+    })?;
+    let report = Report::new(args.size, meshes, refused, args.allow_refused);
     if let Some(path) = &args.json {
-        let mut text = serde_json::to_vec_pretty(&report).map_err(std::io::Error::from)?;
-        text.push(b'\n');
-        write_out(Some(path), &text)?;
+        write_json(path, &report)?;
     }
-    write_out(None, format!("{}\n", report.verdict()).as_bytes())?;
+    write_out(None, format!("{} ({:.1} s)\n", report.verdict(), start.elapsed().as_secs_f64()).as_bytes())?;
     if report.pass { Ok(()) } else { Err(Failure::Check) }
+}
+
+fn write_json(path: &PathBuf, value: &impl serde::Serialize) -> Result<(), Failure> {
+    let mut text = serde_json::to_vec_pretty(value).map_err(std::io::Error::from)?;
+    text.push(b'\n');
+    write_out(Some(path), &text)
+}
+
+/// How reports are shown as they come in.
+struct Show<'a> {
+    args: &'a VerifyArgs,
+    /// Longest name.
+    width: usize,
+    /// Number of meshes.
+    of: usize,
+}
+
+impl Show<'_> {
+    /// The command that shows a single sample, up to the mesh.
+    fn flags(&self) -> String {
+        let plant = self.args.plant.map(|plant| format!(" --plant {plant}")).unwrap_or_default();
+        format!("catoptric verify{plant}")
+    }
+
+    /// All rows of a single mesh; of many a line each, and the rows that failed.
+    fn report(&self, report: &MeshReport) -> Result<(), Failure> {
+        let text = match (self.of == 1 || self.args.verbose, report.pass) {
+            (true, _) => report.to_string(),
+            (false, true) => format!("{}\n", report.line(self.width)),
+            (false, false) => format!("{}\n{}", report.line(self.width), report.table(true)),
+        };
+        write_out(None, text.as_bytes())
+    }
+}
+
+impl Failure {
+    fn of_input(input: &Input, reason: String) -> Self {
+        Self::Bad(format!("{}: {reason}", input.name()))
+    }
 }
