@@ -13,6 +13,8 @@ mod failures;
 mod fragment;
 mod histogram;
 mod key;
+mod only;
+mod only_text;
 mod plant;
 mod references;
 mod regular;
@@ -25,6 +27,7 @@ pub use clock::Timing;
 pub use difference::Sample;
 pub use failures::{FailedPatch, Failures};
 pub use histogram::Histogram;
+pub use only::{Evaluation, Influence, Only, OnlyPatch, only};
 pub use plant::Plant;
 pub use report::{Histograms, KnownWrong, MeshReport, Refused, Report, Tier};
 
@@ -58,6 +61,14 @@ pub enum VerifyError {
     /// A reference evaluator failed.
     #[error(transparent)]
     Osd(#[from] crate::osd::Error),
+    /// A sample that is asked for lies nowhere.
+    #[error("ptex face {face}, but the mesh has only 0 to {last}; a quad is one ptex face, an n-gon n of them")]
+    NoFace {
+        /// The ptex face.
+        face: u32,
+        /// The last there is.
+        last: usize,
+    },
     /// The mesh has not what an error was to be planted in.
     #[error("{what} {index} cannot be planted: the mesh has {count}")]
     Plant {
@@ -78,6 +89,7 @@ pub enum VerifyError {
 const NORMAL_LIMIT: f64 = 1e-3;
 
 /// Everything a tier may look at.
+#[derive(Clone, Copy)]
 struct Subject<'a> {
     mesh: &'a SubdivMesh,
     surface: &'a LimitSurface,

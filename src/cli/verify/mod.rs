@@ -6,8 +6,9 @@ mod many;
 use super::args::VerifyArgs;
 use super::{Failure, write_out};
 use crate::gpu::Gpu;
+use crate::osd::Location;
 use crate::output::check_writable;
-use crate::verify::{MeshReport, Refused, Report};
+use crate::verify::{MeshReport, Refused, Report, Sample, only};
 use inputs::Input;
 use many::{Job, Outcome};
 use std::path::PathBuf;
@@ -19,6 +20,9 @@ pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
         check_writable(path)?;
     }
     let inputs = inputs::find(&args.meshes)?;
+    if let Some(sample) = args.only {
+        return one(args, &inputs, sample);
+    }
     let gpu = Gpu::new()?;
     let job = Job { gpu: &gpu, size: args.size, plant: args.plant };
     let show = Show { width: inputs.iter().map(|input| input.name().len()).max().unwrap_or(0), args, of: inputs.len() };
@@ -47,6 +51,22 @@ pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
     }
     write_out(None, format!("{} ({:.1} s)\n", report.verdict(), start.elapsed().as_secs_f64()).as_bytes())?;
     if report.pass { Ok(()) } else { Err(Failure::Check) }
+}
+
+/// `--only`: all evaluations of one point. It shows, and judges nothing.
+fn one(args: &VerifyArgs, inputs: &[Input], (face, u, v): Location) -> Result<(), Failure> {
+    let [input] = inputs else {
+        return Err(Failure::Bad(format!("--only takes one mesh, not {}; name it", inputs.len())));
+    };
+    let mesh = input.mesh().map_err(Failure::Bad)?;
+    // Without an adapter the shader is left out: what f64 and OpenSubdiv say does not need it.
+    let gpu = Gpu::new().ok();
+    let shown = only(&mesh, gpu.as_ref(), Sample { face, u, v }, args.plant)
+        .map_err(|error| Failure::of_input(input, error.to_string()))?;
+    if let Some(path) = &args.json {
+        write_json(path, &shown)?;
+    }
+    write_out(None, shown.to_string().as_bytes())
 }
 
 fn write_json(path: &PathBuf, value: &impl serde::Serialize) -> Result<(), Failure> {
