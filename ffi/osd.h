@@ -114,17 +114,40 @@ typedef enum osd_answer {
     OSD_ANSWER_NOT_ASKED
 } osd_answer;
 
-/* Far::PatchTable in double precision, Gregory end caps; isolation in 1..10. */
+/* What stands for the surface where refinement ends at a feature. */
+typedef enum osd_end_cap { OSD_END_CAP_GREGORY, OSD_END_CAP_BSPLINE } osd_end_cap;
+
+/*
+ * Far::PatchTable in double precision. Sharp features are isolated to `isolation`, 1..10, all others to `secondary`,
+ * 1..isolation.
+ */
 typedef struct osd_far osd_far;
-osd_status osd_far_create(const osd_mesh *mesh, const double *points, int32_t isolation, osd_far **out);
+osd_status osd_far_create(const osd_mesh *mesh, const double *points, int32_t isolation, int32_t secondary,
+                          osd_end_cap end_cap, osd_far **out);
 void osd_far_destroy(osd_far *far);
 
 /* What a patch table holds. */
 typedef struct osd_far_sizes {
     int64_t patches;
+    int64_t control_points;           /* sum over the patches, 16 or 20 each */
     int64_t bytes;                    /* control vertex indices, patch parameters, and its points in double precision */
 } osd_far_sizes;
 osd_status osd_far_measure(const osd_far *far, osd_far_sizes *out);
+
+/* A patch of the table. */
+typedef struct osd_far_patch {
+    double origin[2];                 /* (u,v) of its first corner, in parameters of the ptex face */
+    int32_t face;                     /* ptex face */
+    int32_t points;                   /* 16: a bicubic B-spline; 20: a Gregory patch (Far::PatchDescriptor) */
+    uint8_t depth;                    /* its side is 2^-depth of the ptex face */
+    uint8_t level;                    /* refinement level of its face in the control mesh */
+    uint8_t boundary;                 /* bit i: beyond edge i there are no control points, those given mean nothing */
+    uint8_t transition;               /* bit i: smaller patches beyond edge i; edges v=0, u=1, v=1, u=0 */
+    uint8_t end_cap;                  /* 1: approximates */
+    uint8_t padding[3];
+} osd_far_patch;
+/* patches: one each; points: 3 * control_points, patch by patch. */
+osd_status osd_far_patches(const osd_far *far, osd_far_patch *patches, double *points);
 
 /* Bfr surfaces in double precision; approximation levels in 1..10 (the library's defaults are 2 and 6). */
 typedef struct osd_bfr osd_bfr;
@@ -133,11 +156,34 @@ osd_status osd_bfr_create(const osd_mesh *mesh, const double *points, int32_t sm
 void osd_bfr_destroy(osd_bfr *bfr);
 
 /*
+ * Far::LimitStencilTable in double precision: every sample as a weighted sum of control points. Its patches are those of
+ * osd_far_create, refined anew in every call round the faces that are asked for, so memory grows with a call's faces and
+ * with the control mesh. Calls do not change the object: any number of threads may make them.
+ */
+typedef struct osd_stencils osd_stencils;
+osd_status osd_stencils_create(const osd_mesh *mesh, int32_t isolation, osd_stencils **out);
+void osd_stencils_destroy(osd_stencils *stencils);
+/*
+ * As osd_far_evaluate, with the control points (3 * vertices) and, for each sample, the number of control points that
+ * its stencil sums (terms: count). Samples come grouped by ptex face.
+ */
+osd_status osd_stencils_evaluate(const osd_stencils *stencils, const double *points, int32_t count,
+                                 const int32_t *faces, const double *uv, double *jets, double *cells, uint8_t *answers,
+                                 int32_t *terms);
+/*
+ * The stencil of one sample. size: its control points, 0 in a hole; of these up to `capacity` are written. vertices:
+ * capacity; weights: 3 * capacity, those of position, d/du, d/dv; kind: an osd_answer.
+ */
+osd_status osd_stencils_weights(const osd_stencils *stencils, int32_t face, const double *uv, int32_t capacity,
+                                int32_t *size, int32_t *vertices, double *weights, uint8_t *kind);
+
+/*
  * Evaluates `count` samples. faces: ptex faces; uv: 2 * count, in [0,1]; jets: 9 * count, position, d/du, d/dv by the
  * parameters of the ptex face; cells: count, the side of the patch that answered in those parameters (1 for Bfr, whose
- * exact surfaces are whole faces); answers: count, an osd_answer each. Neither function is thread-safe on one object.
+ * exact surfaces are whole faces); answers: count, an osd_answer each. osd_far_evaluate does not change its object: any
+ * number of threads may call it. Bfr's cache does change: one thread at a time.
  */
-osd_status osd_far_evaluate(osd_far *far, int32_t count, const int32_t *faces, const double *uv, double *jets,
+osd_status osd_far_evaluate(const osd_far *far, int32_t count, const int32_t *faces, const double *uv, double *jets,
                             double *cells, uint8_t *answers);
 osd_status osd_bfr_evaluate(osd_bfr *bfr, int32_t count, const int32_t *faces, const double *uv, double *jets,
                             double *cells, uint8_t *answers);

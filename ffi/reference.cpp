@@ -1,14 +1,13 @@
 // The reference evaluators: osd_far_* (Far::PatchTable) and osd_bfr_* (Bfr surfaces).
 #include "guard.hpp"
+#include "table.hpp"
 
 #include <opensubdiv/bfr/refinerSurfaceFactory.h>
 #include <opensubdiv/bfr/surface.h>
 #include <opensubdiv/far/patchMap.h>
 #include <opensubdiv/far/patchTable.h>
-#include <opensubdiv/far/patchTableFactory.h>
 
 #include <algorithm>
-#include <cfloat>
 
 using namespace catoptric;
 namespace Bfr = OpenSubdiv::Bfr;
@@ -16,8 +15,21 @@ namespace Bfr = OpenSubdiv::Bfr;
 struct osd_far {
     std::unique_ptr<Far::PatchTable> table;
     std::unique_ptr<Far::PatchMap> map;
-    std::vector<Point> points; // refined, then local
+    std::vector<Point> points; // refined, then local: only end caps have these
+    std::size_t refined = 0;
+
+    bool is_end_cap(Far::ConstIndexArray vertices) const {
+        return std::any_of(vertices.begin(), vertices.end(), [&](Far::Index i) { return std::size_t(i) >= refined; });
+    }
 };
+
+static Far::PatchTableFactory::Options::EndCapType to_far(osd_end_cap end_cap) {
+    switch (end_cap) {
+    case OSD_END_CAP_GREGORY: return Far::PatchTableFactory::Options::ENDCAP_GREGORY_BASIS;
+    case OSD_END_CAP_BSPLINE: return Far::PatchTableFactory::Options::ENDCAP_BSPLINE_BASIS;
+    }
+    throw std::invalid_argument("unknown end cap");
+}
 
 struct osd_bfr {
     using Factory = Bfr::RefinerSurfaceFactory<>;
@@ -45,31 +57,27 @@ struct osd_bfr {
     std::vector<double> patch_points;
 };
 
-// Parameters below the normal range count as 0: end caps divide by them, which overflows.
-static double flushed(double parameter) { return parameter < DBL_MIN ? 0.0 : parameter; }
-
 extern "C" {
 
-osd_status osd_far_create(const osd_mesh *mesh, const double *points, int32_t isolation, osd_far **out) {
+osd_status osd_far_create(const osd_mesh *mesh, const double *points, int32_t isolation, int32_t secondary,
+                          osd_end_cap end_cap, osd_far **out) {
     return create(out, [&] {
         require(isolation >= 1 && isolation <= 10, "isolation must be 1 to 10");
+        require(secondary >= 1 && secondary <= isolation, "secondary isolation must be 1 to that of sharp features");
         auto refiner = make_refiner(*mesh);
 
-        Far::PatchTableFactory::Options options(isolation);
-        options.SetPatchPrecision<double>();
-        options.SetEndCapType(Far::PatchTableFactory::Options::ENDCAP_GREGORY_BASIS);
-        options.useInfSharpPatch = true;                  // the default smooths creases
-        options.generateLegacySharpCornerPatches = false; // the default moves smooth corners
-        options.useSingleCreasePatch = false;             // drawing only
-        options.generateVaryingTables = false;
-        refiner->RefineAdaptive(options.GetRefineAdaptiveOptions());
+        Far::PatchTableFactory::Options options = exact_options(isolation);
+        options.SetEndCapType(to_far(end_cap));
+        Far::TopologyRefiner::AdaptiveOptions refinement = options.GetRefineAdaptiveOptions();
+        refinement.SetSecondaryLevel(secondary);
+        refiner->RefineAdaptive(refinement);
 
         auto far = std::make_unique<osd_far>();
         far->table.reset(Far::PatchTableFactory::Create(*refiner, options));
         if (!far->table) throw std::runtime_error("OpenSubdiv made no patch table");
         far->map = std::make_unique<Far::PatchMap>(*far->table);
 
-        std::size_t const refined = count_points(*refiner);
+        std::size_t const refined = far->refined = count_points(*refiner);
         far->points.resize(count_points(*refiner, far->table->GetNumLocalPoints()));
         interpolate(*refiner, points, far->points.data());
         if (far->table->GetNumLocalPoints() > 0) {
@@ -86,16 +94,46 @@ void osd_far_destroy(osd_far *far) { delete far; }
 osd_status osd_far_measure(const osd_far *far, osd_far_sizes *out) {
     return guard([&] {
         out->patches = far->table->GetNumPatchesTotal();
+        out->control_points = int64_t(far->table->GetPatchControlVerticesTable().size());
         out->bytes = int64_t(far->table->GetPatchControlVerticesTable().size() * sizeof(Far::Index) +
                              far->table->GetPatchParamTable().size() * sizeof(Far::PatchParam) +
                              far->points.size() * sizeof(Point));
     });
 }
 
-osd_status osd_far_evaluate(osd_far *far, int32_t count, const int32_t *faces, const double *uv, double *jets,
+osd_status osd_far_patches(const osd_far *far, osd_far_patch *patches, double *points) {
+    return guard([&] {
+        Far::PatchTable const &table = *far->table;
+        for (int array = 0; array < table.GetNumPatchArrays(); ++array) {
+            for (int i = 0; i < table.GetNumPatches(array); ++i, ++patches) {
+                auto const vertices = table.GetPatchVertices(array, i);
+                Far::PatchParam const param = table.GetPatchParam(array, i);
+                double const side = param.GetParamFraction();
+                *patches = osd_far_patch{};
+                patches->face = param.GetFaceId();
+                patches->origin[0] = side * param.GetU();
+                patches->origin[1] = side * param.GetV();
+                patches->points = vertices.size();
+                // The quadrants of an n-gon are faces of level 1, and ptex faces of their own.
+                patches->level = uint8_t(param.GetDepth());
+                patches->depth = uint8_t(param.GetDepth() - (param.NonQuadRoot() ? 1 : 0));
+                patches->boundary = uint8_t(param.GetBoundary());
+                patches->transition = uint8_t(param.GetTransition());
+                patches->end_cap = far->is_end_cap(vertices);
+                for (Far::Index vertex : vertices) {
+                    std::copy_n(far->points[vertex].x, 3, points);
+                    points += 3;
+                }
+            }
+        }
+    });
+}
+
+osd_status osd_far_evaluate(const osd_far *far, int32_t count, const int32_t *faces, const double *uv, double *jets,
                             double *cells, uint8_t *answers) {
     return guard([&] {
-        std::vector<double> p, du, dv;
+        // The most points that a patch has: 20 of a Gregory patch.
+        double p[20], du[20], dv[20];
         for (int32_t i = 0; i < count; ++i, jets += 9) {
             std::fill_n(jets, 9, 0.0);
             cells[i] = 1.0;
@@ -106,11 +144,10 @@ osd_status osd_far_evaluate(osd_far *far, int32_t count, const int32_t *faces, c
                 continue;
             }
             auto const vertices = far->table->GetPatchVertices(*handle);
-            p.resize(vertices.size()), du.resize(vertices.size()), dv.resize(vertices.size());
-            far->table->EvaluateBasis<double>(*handle, u, v, p.data(), du.data(), dv.data());
-            // The parameters of an n-gon's quadrants count from the n-gon: the derivatives come back doubled.
+            require(vertices.size() <= 20, "a patch of more than 20 points");
+            far->table->EvaluateBasis<double>(*handle, u, v, p, du, dv);
             Far::PatchParam const param = far->table->GetPatchParam(*handle);
-            double const scale = param.NonQuadRoot() ? 0.5 : 1.0;
+            double const scale = derivative_scale(param);
             cells[i] = param.GetParamFraction();
             for (int j = 0; j < vertices.size(); ++j)
                 for (int k = 0; k < 3; ++k) {
@@ -119,8 +156,7 @@ osd_status osd_far_evaluate(osd_far *far, int32_t count, const int32_t *faces, c
                     jets[3 + k] += scale * du[j] * x;
                     jets[6 + k] += scale * dv[j] * x;
                 }
-            bool const regular = far->table->GetPatchDescriptor(*handle).GetType() == Far::PatchDescriptor::REGULAR;
-            answers[i] = regular ? OSD_ANSWER_REGULAR : OSD_ANSWER_END_CAP;
+            answers[i] = far->is_end_cap(vertices) ? OSD_ANSWER_END_CAP : OSD_ANSWER_REGULAR;
         }
     });
 }

@@ -6,6 +6,7 @@
 //! * [`osd`]: OpenSubdiv refines its topology, and answers as the reference of the regression;
 //! * [`patch`]: the refined faces whose limit has a closed form become patches;
 //! * [`stam`]: class tables give the exact limit anywhere, in f64 ([`stam::LimitSurface`]);
+//! * [`adaptive`]: OpenSubdiv's own patches, end caps included, as other programs show them;
 //! * [`field`]: cameras, lights and what a surface mirrors;
 //! * [`gpu`]: the same limit for every pixel, in a fragment pipeline;
 //! * [`verify`]: all of it compared with OpenSubdiv;
@@ -22,6 +23,7 @@
 //! # Ok::<(), catoptric::patch::PatchError>(())
 //! ```
 
+pub mod adaptive;
 pub mod cli;
 pub mod field;
 pub mod gpu;

@@ -46,7 +46,7 @@ impl Written {
             camera: &view.camera,
             colour: &colour,
             seen: &seen,
-            surface: &surface,
+            source: &surface,
             made_by: "by hand: \u{fc}\u{2192}",
         };
         write_exr(&path, &layers).expect("a writable folder");

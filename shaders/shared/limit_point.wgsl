@@ -62,10 +62,17 @@ fn limit_point(record: vec4u, uv: vec2f) -> LimitPoint {
         }
         scale = textureLoad(scales, at(record.z + n - 1u), 0).xy;
     }
-    let bu = basis(t.x);
-    let bv = basis(t.y);
-    let cu = basis_derivative(t.x);
-    let cv = basis_derivative(t.y);
+    var bu = basis(t.x);
+    var bv = basis(t.y);
+    var cu = basis_derivative(t.x);
+    var cv = basis_derivative(t.y);
+    let gregory = HAS_GREGORY && is_gregory(record);
+    if gregory {
+        bu = bernstein(t.x);
+        bv = bernstein(t.y);
+        cu = bernstein_derivative(t.x);
+        cv = bernstein_derivative(t.y);
+    }
     var position = vec3f(0.0);
     var du = vec3f(0.0);
     var dv = vec3f(0.0);
@@ -79,6 +86,19 @@ fn limit_point(record: vec4u, uv: vec2f) -> LimitPoint {
         position += line * rb[j];
         du += vec3f(dot(x, cu), dot(y, cu), dot(z, cu)) * rb[j];
         dv += line * rc[j];
+    }
+    if gregory {
+        let x = point_texel(first + 12u);
+        let y = point_texel(first + 13u);
+        let z = point_texel(first + 14u);
+        // OpenSubdiv's derivatives hold the weights still.
+        let w = gregory_weights(t);
+        let a = w * inner(bu, bv);
+        let b = w * inner(cu, bv);
+        let c = w * inner(bu, cv);
+        position += vec3f(dot(x, a), dot(y, a), dot(z, a));
+        du += vec3f(dot(x, b), dot(y, b), dot(z, b));
+        dv += vec3f(dot(x, c), dot(y, c), dot(z, c));
     }
     // Not in a branch round the loop above: software adapters compute both sides. This loop mostly ends at once, but on
     // them it costs the pass a quarter even so (it spills registers); hence the constant.

@@ -6,7 +6,8 @@
 @group(0) @binding(0) var patches: texture_2d<u32>;
 // In blocks of BLOCK_ROWS rows. Rows of 4 points, 3 texels each: the four x, the four y, the four z. A regular patch has
 // 4 rows, each but the first as its difference from the one before: strips along creases are so thin that dv would
-// lose its digits in the difference of points. An expanded level of an irregular patch has 9: those of the windows at u >= 1 (5), then those of the window at
+// lose its digits in the difference of points. A Gregory patch has its Bezier net with f- inside likewise, then a row of
+// f+ - f-, a corner each. An expanded level of an irregular patch has 9: those of the windows at u >= 1 (5), then those of the window at
 // u < 1 (4). After the expanded levels come the picked points, a group of 4 like a row, and one texel with the limit
 // normal at (0,0). The matrix of a class gives the levels after the expanded ones: for every level and every picked
 // point 9 texels, its weights in the 4 points of each of the 9 rows.
@@ -21,6 +22,10 @@ fn point_texel(index: u32) -> vec4f {
 
 fn is_irregular(record: vec4u) -> bool {
     return (record.y & 255u) == KIND_IRREGULAR;
+}
+
+fn is_gregory(record: vec4u) -> bool {
+    return (record.y & 255u) == KIND_GREGORY;
 }
 
 // Weights of the rows as they are stored, from those of the points; `sum` is that of the weights.

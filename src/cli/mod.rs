@@ -2,7 +2,6 @@
 
 mod account;
 mod args;
-mod conformance;
 mod eval;
 mod frames;
 mod info;
@@ -154,6 +153,11 @@ impl Steps {
             self.bar.set_draw_target(indicatif::ProgressDrawTarget::stderr());
         }
         self.bar.inc(1);
+    }
+
+    /// Runs what writes to the terminal, with the bar out of the way.
+    fn aside<R>(&self, write: impl FnOnce() -> R) -> R {
+        self.bar.suspend(write)
     }
 }
 

@@ -7,7 +7,9 @@ use super::rig::RigArgs;
 use super::settings::{made_by, mesh_digest};
 use super::{Failure, Steps, load, progress};
 use crate::field::{Pattern, Picture, Scout};
-use crate::gpu::{Gpu, MAX_ENLARGE, MAX_PROXY_LEVEL, MAX_SAMPLES, Pipeline, Stage, TableLayout, Tables, View, tables};
+use crate::gpu::{
+    Gpu, MAX_ENLARGE, MAX_PROXY_LEVEL, MAX_SAMPLES, PatchSource, Pipeline, Stage, TableLayout, Tables, View, tables,
+};
 use crate::output::{Heat, Layers, check_writable, heat, read_exr_made_by, read_png_made_by, write_exr, write_png};
 use crate::stam::LimitSurface;
 use clap::{Args, ValueEnum};
@@ -229,7 +231,7 @@ impl Shot<'_> {
         show: Option<ShowName>,
         gpu: &Gpu,
         tables: &Tables,
-        surface: &LimitSurface,
+        source: &dyn PatchSource,
         account: &mut Account,
     ) -> Result<(), Failure> {
         let Shot { path, view, made_by } = self;
@@ -255,7 +257,7 @@ impl Shot<'_> {
                 account.add(&colour.timings);
                 account.add(&seen.timings);
                 account.picture(colour.summary);
-                let layers = Layers { camera: &view.camera, colour: &colour, seen: &seen, surface, made_by };
+                let layers = Layers { camera: &view.camera, colour: &colour, seen: &seen, source, made_by };
                 account.time("write", || write_exr(path, &layers))?;
             }
         }

@@ -35,7 +35,7 @@ pub use view::{MAX_ENLARGE, MAX_FOV, MAX_POINTS_SIDE, MAX_PROXY_LEVEL, MAX_SAMPL
 use crate::stam::{Jet, LimitSurface};
 use device::Device;
 use passes::Passes;
-use shader::BLOCK_ROWS;
+use shader::{BLOCK_ROWS, Content};
 use std::time::{Duration, Instant};
 
 /// Why the GPU could not do its work.
@@ -97,8 +97,8 @@ pub struct Sample {
 #[derive(Debug)]
 pub struct Gpu {
     device: Device,
-    /// For tables in the expanded layout, and for the others.
-    passes: [Passes; 2],
+    /// For each content of tables.
+    passes: [Passes; 3],
     startup: Duration,
 }
 
@@ -123,12 +123,12 @@ impl Gpu {
     fn with_blocks(choice: &AdapterChoice, rows: u32) -> Result<Gpu, GpuError> {
         let start = Instant::now();
         let device = Device::open(choice, rows)?;
-        Ok(Gpu { device, passes: [false, true].map(Passes::new), startup: start.elapsed() })
+        Ok(Gpu { device, passes: Content::ALL.map(Passes::new), startup: start.elapsed() })
     }
 
     /// The passes that read these tables.
     fn passes(&self, tables: &Tables) -> &Passes {
-        &self.passes[usize::from(tables.layout() != TableLayout::Expanded)]
+        &self.passes[tables.content() as usize]
     }
 
     /// Name of the adapter.

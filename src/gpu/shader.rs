@@ -10,6 +10,8 @@ use crate::stam::LEVELS;
 pub const KIND_REGULAR: u32 = 0;
 /// Kind of a patch with a table of levels.
 pub const KIND_IRREGULAR: u32 = 1;
+/// Kind of a Gregory patch of 16 points and 4 differences.
+pub const KIND_GREGORY: u32 = 2;
 /// Pattern numbers.
 pub const PATTERN_STRIPES: u32 = 0;
 /// Two families of stripes.
@@ -50,13 +52,33 @@ const MOST_STEPS: u32 = 24;
 /// pixels of a cube at level 7, 6 fall through without it, none with it.)
 pub const PUSH: f32 = 0.1;
 
+/// What tables hold: what they do not is not compiled into the shaders, where the software adapter would pay for it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) enum Content {
+    /// Points of regular patches and levels.
+    #[default]
+    Points,
+    /// Some levels may be given by picked points.
+    Tails,
+    /// Regular patches, levels and Gregory patches.
+    Gregory,
+}
+
+impl Content {
+    pub const ALL: [Self; 3] = [Self::Points, Self::Tails, Self::Gregory];
+
+    pub fn variant(self, block_rows: u32) -> Variant {
+        Variant { block_rows, has_tail: self == Self::Tails, has_gregory: self == Self::Gregory }
+    }
+}
+
 /// What is compiled into the shaders about the tables that they read.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Variant {
     /// Rows of a block of a table.
     pub block_rows: u32,
-    /// Some levels may be given by picked points.
     pub has_tail: bool,
+    pub has_gregory: bool,
 }
 
 /// One shader module: its name, the files that it consists of, and its entry points.
@@ -71,7 +93,7 @@ pub struct Module {
 impl Module {
     /// The whole source, constants first.
     pub fn source(&self) -> String {
-        self.source_for(&Variant { block_rows: BLOCK_ROWS, has_tail: true })
+        self.source_for(&Variant { block_rows: BLOCK_ROWS, has_tail: true, has_gregory: true })
     }
 
     /// The same for other tables.
@@ -87,6 +109,7 @@ impl Module {
 const RECORDS: &str = include_str!("../../shaders/shared/records.wgsl");
 const TABLES: &str = include_str!("../../shaders/shared/tables.wgsl");
 const LIMIT_POINT: &str = include_str!("../../shaders/shared/limit_point.wgsl");
+const GREGORY: &str = include_str!("../../shaders/shared/gregory.wgsl");
 const CERTIFICATE: &str = include_str!("../../shaders/shared/certificate.wgsl");
 const CHART: &str = include_str!("../../shaders/shared/chart.wgsl");
 const FULLSCREEN: &str = include_str!("../../shaders/shared/fullscreen.wgsl");
@@ -97,16 +120,25 @@ const PATTERN: &str = include_str!("../../shaders/shared/pattern.wgsl");
 const REFLECTION: &str = include_str!("../../shaders/field/reflection.wgsl");
 
 /// Rasterises the proxy.
-pub const VISIBILITY: Module = Module { name: "visibility", files: &[RECORDS, TABLES, LIMIT_POINT, VISIBILITY_PASS] };
+pub const VISIBILITY: Module =
+    Module { name: "visibility", files: &[RECORDS, TABLES, GREGORY, LIMIT_POINT, VISIBILITY_PASS] };
 /// What the proxy covers.
 pub const RECTANGLE: Module = Module {
     name: "rectangle",
-    files: &[RECORDS, TABLES, LIMIT_POINT, VISIBILITY_PASS, include_str!("../../shaders/rectangle.wgsl")],
+    files: &[RECORDS, TABLES, GREGORY, LIMIT_POINT, VISIBILITY_PASS, include_str!("../../shaders/rectangle.wgsl")],
 };
 /// Exact positions, drawn as points.
 pub const POINTS: Module = Module {
     name: "points",
-    files: &[RECORDS, TABLES, LIMIT_POINT, VISIBILITY_PASS, FULLSCREEN, include_str!("../../shaders/points.wgsl")],
+    files: &[
+        RECORDS,
+        TABLES,
+        GREGORY,
+        LIMIT_POINT,
+        VISIBILITY_PASS,
+        FULLSCREEN,
+        include_str!("../../shaders/points.wgsl"),
+    ],
 };
 /// Exact surface per pixel.
 pub const LIMIT: Module = Module {
@@ -114,6 +146,7 @@ pub const LIMIT: Module = Module {
     files: &[
         RECORDS,
         TABLES,
+        GREGORY,
         LIMIT_POINT,
         REFLECTION,
         OCTAHEDRAL,
@@ -136,8 +169,10 @@ pub const SHADE: Module = Module {
 pub const RESOLVE: Module =
     Module { name: "resolve", files: &[FULLSCREEN, include_str!("../../shaders/resolve.wgsl")] };
 /// Limit at samples.
-pub const EVALUATE: Module =
-    Module { name: "evaluate", files: &[RECORDS, TABLES, LIMIT_POINT, include_str!("../../shaders/evaluate.wgsl")] };
+pub const EVALUATE: Module = Module {
+    name: "evaluate",
+    files: &[RECORDS, TABLES, GREGORY, LIMIT_POINT, include_str!("../../shaders/evaluate.wgsl")],
+};
 
 /// Samples solved on the host.
 pub const SPECKS: Module = Module { name: "specks", files: &[CERTIFICATE, include_str!("../../shaders/specks.wgsl")] };
@@ -153,6 +188,7 @@ pub const MODULES: [Module; 10] =
 fn constants(variant: &Variant) -> String {
     let counts = [
         ("KIND_IRREGULAR", KIND_IRREGULAR),
+        ("KIND_GREGORY", KIND_GREGORY),
         ("PATTERN_STRIPES", PATTERN_STRIPES),
         ("PATTERN_LATTICE", PATTERN_LATTICE),
         ("PATTERN_CIRCLES", PATTERN_CIRCLES),
@@ -173,6 +209,6 @@ fn constants(variant: &Variant) -> String {
     ];
     let mut text: String = counts.iter().map(|(name, value)| format!("const {name} = {value}u;\n")).collect();
     text.push_str(&format!("const PUSH = {PUSH:?};\nconst SETTLED = {SETTLED:?};\nconst BAND = {BAND:?};\n"));
-    text.push_str(&format!("const HAS_TAIL = {};\n", variant.has_tail));
+    text.push_str(&format!("const HAS_TAIL = {};\nconst HAS_GREGORY = {};\n", variant.has_tail, variant.has_gregory));
     text
 }

@@ -2,8 +2,7 @@
 
 use super::{MADE_BY, OutputError, write_whole};
 use crate::field::{Camera, Projection};
-use crate::gpu::{LinearFrame, NO_PATCH, SurfaceImage};
-use crate::stam::LimitSurface;
+use crate::gpu::{LinearFrame, NO_PATCH, PatchSource, SurfaceImage};
 use ::exr::math::Vec2;
 use ::exr::meta::MetaData;
 use ::exr::prelude::{
@@ -25,8 +24,8 @@ pub struct Layers<'a> {
     pub colour: &'a LinearFrame,
     /// What pixel centres see, of the same size: P, N, ptex, field and residual.
     pub seen: &'a SurfaceImage,
-    /// The surface, which knows the ptex face of every patch.
-    pub surface: &'a LimitSurface,
+    /// Where the patches came from, which knows the ptex face of each.
+    pub source: &'a dyn PatchSource,
     /// How the picture was made: the attribute [`MADE_BY`].
     pub made_by: &'a str,
 }
@@ -49,7 +48,7 @@ impl Layers<'_> {
             let [x, y, _] = nothing;
             return Pixel { position: nothing, normal: nothing, face: NO_FACE, uv: [x, y], field: x, residual: x };
         }
-        let patch = &self.surface.patches()[self.seen.patch[i] as usize];
+        let (face, uv) = self.source.to_ptex(self.seen.patch[i] as usize, self.seen.uv[i].map(f64::from));
         let position = self.seen.position[i];
         let width = self.seen.size[0] as usize;
         let centre = DVec2::new((i % width) as f64, (i / width) as f64) + 0.5;
@@ -57,8 +56,8 @@ impl Layers<'_> {
         Pixel {
             position: position.as_vec3().to_array(),
             normal: self.seen.normal[i],
-            face: patch.ptex,
-            uv: patch.to_ptex(self.seen.uv[i].map(f64::from)).map(|x| x as f32),
+            face,
+            uv: uv.map(|x| x as f32),
             field: self.seen.field[i].map_or(f32::NAN, |value| value.x as f32),
             residual: self.camera.project(position).map_or(f32::NAN, |pixel| off(pixel) as f32),
         }

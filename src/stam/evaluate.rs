@@ -106,7 +106,7 @@ impl Local {
 }
 
 /// Unit normal of two tangents; zero where they are parallel or vanish.
-fn unit(du: DVec3, dv: DVec3) -> DVec3 {
+pub(super) fn unit(du: DVec3, dv: DVec3) -> DVec3 {
     // Normalised first: the product of derivatives of tiny models would underflow.
     du.normalize_or_zero().cross(dv.normalize_or_zero()).normalize_or_zero()
 }

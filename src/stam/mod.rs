@@ -32,6 +32,13 @@ pub struct Jet {
     pub normal: DVec3,
 }
 
+impl Jet {
+    /// With the normal that the derivatives span; zero where they are parallel or vanish.
+    pub fn new(position: DVec3, du: DVec3, dv: DVec3) -> Jet {
+        Jet { position, du, dv, normal: evaluate::unit(du, dv) }
+    }
+}
+
 /// A [`Jet`] with second derivatives.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Jet2 {

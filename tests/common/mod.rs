@@ -22,6 +22,16 @@ pub fn meshes() -> Vec<SubdivMesh> {
     meshes
 }
 
+/// The valid meshes of the corpus; none where it is not beside the project.
+pub fn corpus() -> Vec<SubdivMesh> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/meshes");
+    let inside = |path: &Path| std::fs::read_dir(path).into_iter().flatten().flatten().map(|entry| entry.path());
+    let mut paths: Vec<_> = inside(&folder).flat_map(|path| inside(&path).collect::<Vec<_>>()).collect();
+    paths.retain(|path| path.extension().is_some_and(|e| e == "obj"));
+    paths.sort();
+    paths.iter().filter_map(|path| mesh::read(path).ok()).collect()
+}
+
 /// Angle in degrees, exact for small ones.
 pub fn angle_deg(a: DVec3, b: DVec3) -> f64 {
     a.cross(b).length().atan2(a.dot(b)).to_degrees()

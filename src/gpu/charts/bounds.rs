@@ -45,6 +45,11 @@ impl Bounds {
         (0..2).all(|k| point[k] >= self.low[k] - BAND && point[k] <= self.high[k] + BAND)
     }
 
+    /// With `margin` samples more on each side.
+    pub fn widened(&self, margin: f64) -> Bounds {
+        Bounds { low: self.low.map(|x| x - margin), high: self.high.map(|x| x + margin), near: self.near }
+    }
+
     /// Longest side.
     pub fn extent(&self) -> f64 {
         max(self.high[0] - self.low[0], self.high[1] - self.low[1])

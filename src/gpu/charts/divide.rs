@@ -7,6 +7,7 @@ use super::frame::{ChartFrame, Flat};
 use super::lens::Lens;
 use super::piece::Piece;
 use super::solve::{Hit, POINT, first_hit, newton};
+use crate::adaptive::Gregory;
 use crate::gpu::records::{ChartRecord, SpeckRecord};
 use crate::gpu::tables::PatchNets;
 use crate::stam::{Rings, WINDOWS};
@@ -52,6 +53,48 @@ impl<'a> Divider<'a> {
                 self.cut(&mut Piece::new(|k| self.lens.project(net[k]), [0.0; 2], 1.0, owed));
             }
             PatchNets::Irregular(rings) => self.irregular(levels, rings),
+            PatchNets::Gregory(patch) => {
+                let lens = self.lens;
+                let patch = patch.mapped(|p| lens.project(p), |v| lens.turn(v));
+                let owed = levels.map(|own| self.level.saturating_sub(own));
+                if self.sees(patch.hull(), 0.0) {
+                    self.gregory(&patch, [0.0; 2], 1.0, owed);
+                }
+            }
+        }
+    }
+
+    /// Whether the tile may see anything that lies within `margin` samples of a hull.
+    fn sees(&self, hull: impl Iterator<Item = DVec3> + Clone, margin: f64) -> bool {
+        match seen(self.lens, hull) {
+            Seen::No => false,
+            Seen::Straddles => true,
+            Seen::Within(bounds) => {
+                let samples = bounds.widened(margin).samples(self.lens);
+                samples.iter().all(|range| !range.is_empty()) && !self.hides(&bounds, &samples)
+            }
+        }
+    }
+
+    /// A square of a projected Gregory patch: quarters until each is as good as bicubic.
+    fn gregory(&mut self, patch: &Gregory, origin: [f64; 2], size: f64, owed: [u8; 2]) {
+        /// Samples by which the bicubic may be off: small against [`BAND`], so that neighbours leave no gap.
+        const TOLERANCE: f64 = 0.25 * BAND;
+        let piece =
+            Piece::through(|[u, v]| patch.position([origin[0] + u * size, origin[1] + v * size]), origin, size, owed);
+        let error = piece.error(self.lens, |uv| patch.position(uv));
+        if error <= TOLERANCE || size < 0.5f64.powi(DEEPEST as i32) {
+            return self.cut(&mut { piece });
+        }
+        // Twice, for the error is measured at some points only. At the near plane it cannot be, but is small from here on.
+        let margin = if error.is_finite() { 2.0 * error } else { 0.0 };
+        if (error.is_finite() || size <= 0.125) && !self.sees(piece.points(), margin) {
+            return;
+        }
+        let half = 0.5 * size;
+        for [i, j] in [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]] {
+            let origin = [origin[0] + i * half, origin[1] + j * half];
+            self.gregory(patch, origin, half, owed.map(|levels| levels.saturating_sub(1)));
         }
     }
 

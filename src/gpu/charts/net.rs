@@ -68,6 +68,22 @@ pub(super) fn bezier_of_spline(net: &Net) -> Net {
     transposed(&bezier(&transposed(&bezier(net))))
 }
 
+/// The cubic Bezier points of curves through their values at 0, 1/3, 2/3 and 1, across the rows.
+fn through([a, b, c, d]: &Net) -> Net {
+    let sixth = 1.0 / 6.0;
+    [
+        *a,
+        row(|k| sixth * (-5.0 * a[k] + 18.0 * b[k] - 9.0 * c[k] + 2.0 * d[k])),
+        row(|k| sixth * (2.0 * a[k] - 9.0 * b[k] + 18.0 * c[k] - 5.0 * d[k])),
+        *d,
+    ]
+}
+
+/// The bicubic Bezier net through a grid of values at thirds.
+pub(super) fn bezier_through(values: &Net) -> Net {
+    transposed(&through(&transposed(&through(values))))
+}
+
 /// De Casteljau at 1/2, across the rows: leaves the lower half, returns the upper one.
 #[inline(always)]
 fn halve_rows(net: &mut Net) -> Net {

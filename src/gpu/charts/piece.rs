@@ -3,7 +3,7 @@
 use super::bounds::{Line, Seen, seen_net};
 use super::frame::{Flat, Frame};
 use super::lens::Lens;
-use super::net::{Net, Row, bezier_of_spline, combined, dot, greatest, halve, row};
+use super::net::{Net, Row, bezier_of_spline, bezier_through, combined, dot, greatest, halve, max, row};
 use super::solve::POINT;
 use glam::DVec3;
 
@@ -35,6 +35,41 @@ impl Piece {
             *net = bezier_of_spline(net);
         }
         Piece { net, origin, size: [size; 2], owed }
+    }
+
+    /// The bicubic that goes through 4 x 4 points of a projected surface, given by the piece's own parameters: on its borders it
+    /// depends on nothing but the points there.
+    pub fn through(at: impl Fn([f64; 2]) -> DVec3, origin: [f64; 2], size: f64, owed: [u8; 2]) -> Piece {
+        const THIRDS: [f64; 4] = [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0];
+        let mut net = [[[0.0; 4]; 4]; 3];
+        for j in 0..4 {
+            for i in 0..4 {
+                let point = at([THIRDS[i], THIRDS[j]]).to_array();
+                (0..3).for_each(|c| net[c][j][i] = point[c]);
+            }
+        }
+        Piece { net: net.map(|values| bezier_through(&values)), origin, size: [size; 2], owed }
+    }
+
+    /// How far a surface, given by the patch's parameters, is from the piece at nine points between those of
+    /// [`through`](Self::through), in samples; infinite where it reaches the near plane.
+    pub fn error(&self, lens: &Lens, surface: impl Fn([f64; 2]) -> DVec3) -> f64 {
+        const BETWEEN: [f64; 3] = [1.0 / 6.0, 0.5, 5.0 / 6.0];
+        let mut error = 0.0;
+        for own in BETWEEN.iter().flat_map(|&v| BETWEEN.map(|u| [u, v])) {
+            let (a, b) = (surface(self.to_patch(own)).to_array(), self.at(own).value);
+            if lens.perspective && !(a[2].min(b[2]) >= lens.near) {
+                return f64::INFINITY;
+            }
+            let [a, b] = [a, b].map(|p| lens.seen(p));
+            error = max(error, max((a[0] - b[0]).abs(), (a[1] - b[1]).abs()));
+        }
+        error
+    }
+
+    /// The control points, projected.
+    pub fn points(&self) -> impl Iterator<Item = DVec3> + Clone {
+        (0..16).map(|k| DVec3::from_array([0, 1, 2].map(|c| self.net[c][k / 4][k % 4])))
     }
 
     pub fn seen(&self, lens: &Lens) -> Seen {

@@ -11,7 +11,7 @@ pub mod visibility;
 
 use super::device::Device;
 use super::proxy::Proxy;
-use super::shader::{Module, TILE_SIDE, Variant};
+use super::shader::{Content, Module, TILE_SIDE};
 use super::view::Tile;
 use super::{GpuError, Pipeline, Stage, Tables, View};
 use std::sync::OnceLock;
@@ -20,8 +20,8 @@ use wgpu::{BufferUsages, PrimitiveTopology, TextureFormat, TextureUsages};
 /// The compiled pipelines, each made when it is first needed: on a software adapter compiling takes longer than drawing.
 #[derive(Debug, Default)]
 pub struct Passes {
-    /// Whether they read tables with levels given by picked points.
-    has_tail: bool,
+    /// What the tables that they read hold.
+    content: Content,
     /// What [`Stage::Auto`] found out.
     pub fastest: OnceLock<Stage>,
     specks: OnceLock<wgpu::RenderPipeline>,
@@ -46,12 +46,12 @@ pub struct Passes {
 }
 
 impl Passes {
-    pub(super) fn new(has_tail: bool) -> Passes {
-        Passes { has_tail, ..Passes::default() }
+    pub(super) fn new(content: Content) -> Passes {
+        Passes { content, ..Passes::default() }
     }
 
     fn shader(&self, device: &Device, module: &Module) -> wgpu::ShaderModule {
-        let variant = Variant { block_rows: device.block_rows, has_tail: self.has_tail };
+        let variant = self.content.variant(device.block_rows);
         device.device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(module.name),
             source: wgpu::ShaderSource::Wgsl(module.source_for(&variant).into()),

@@ -1,7 +1,7 @@
 //! The three layouts of the tables, and what they take.
 
 use super::basis::Basis;
-use super::{PatchSource, TABLE_LEVELS};
+use super::{PatchSource, Storage, TABLE_LEVELS};
 use crate::gpu::shader::{LEVEL_TEXELS, SCALE_LEVELS};
 use crate::stam::LimitSurface;
 use rayon::prelude::*;
@@ -22,6 +22,8 @@ const AMPLE: u64 = 8 << 20;
 const HYBRID_LEVELS: usize = 4;
 /// Texels of a regular patch: 4 rows of 4 points, x, y and z each.
 const REGULAR_TEXELS: usize = 12;
+/// Texels of a Gregory patch: a row more.
+const GREGORY_TEXELS: usize = REGULAR_TEXELS + 3;
 
 /// How the levels of irregular patches are stored. The surface is the same to the rounding of f32.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -87,6 +89,8 @@ pub(super) struct Plan {
     pub expanded: usize,
     /// The rest, class by class; none where all levels are expanded.
     pub bases: Vec<Option<Basis>>,
+    /// Some patches are [`Storage::Gregory`].
+    pub has_gregory: bool,
     /// Texels in the table of points: matrices first, then patches.
     pub texels: u64,
     /// Bytes of all tables.
@@ -117,11 +121,14 @@ impl Plan {
             true => source.classes().par_iter().map(|table| Basis::new(table, expanded + 1..=TABLE_LEVELS)).collect(),
             false => Vec::new(),
         };
-        let mut plan = Plan { layout, expanded, bases, texels: 0, bytes: 0 };
+        let has_gregory = census.gregory > 0;
+        let mut plan = Plan { layout, expanded, bases, has_gregory, texels: 0, bytes: 0 };
         let matrices: usize = (0..plan.bases.len()).map(|class| plan.matrix_texels(class)).sum();
         let irregular: usize =
-            census.classes.iter().enumerate().map(|(class, &count)| count * plan.patch_texels(true, Some(class))).sum();
-        let rest = census.regular * REGULAR_TEXELS + census.classless * plan.patch_texels(true, None);
+            census.classes.iter().enumerate().map(|(class, &count)| count * plan.irregular_texels(Some(class))).sum();
+        let rest = census.regular * REGULAR_TEXELS
+            + census.gregory * GREGORY_TEXELS
+            + census.classless * plan.irregular_texels(None);
         plan.texels = (matrices + irregular + rest) as u64;
         plan.bytes =
             16 * (source.count() as u64 + plan.texels) + 8 * u64::from(SCALE_LEVELS) * census.eigenvalues as u64;
@@ -133,13 +140,21 @@ impl Plan {
         self.bases.get(class)?.as_ref()
     }
 
-    /// Texels of a patch: its expanded levels, its picked points in groups of 4 (x, y and z each), its normal.
-    pub fn patch_texels(&self, irregular: bool, class: Option<usize>) -> usize {
+    /// Texels of a patch.
+    pub fn patch_texels(&self, storage: Storage, class: Option<usize>) -> usize {
+        match storage {
+            Storage::Regular => REGULAR_TEXELS,
+            Storage::Gregory => GREGORY_TEXELS,
+            Storage::Irregular => self.irregular_texels(class),
+        }
+    }
+
+    /// Texels of an irregular patch: its expanded levels, its picked points in groups of 4 (x, y and z each), its normal.
+    fn irregular_texels(&self, class: Option<usize>) -> usize {
         let levels = |count: usize| count * LEVEL_TEXELS as usize + 1;
-        match (irregular, class.and_then(|class| self.basis(class))) {
-            (false, _) => REGULAR_TEXELS,
-            (true, Some(basis)) => levels(self.expanded) + 3 * basis.groups(),
-            (true, None) => levels(TABLE_LEVELS),
+        match class.and_then(|class| self.basis(class)) {
+            Some(basis) => levels(self.expanded) + 3 * basis.groups(),
+            None => levels(TABLE_LEVELS),
         }
     }
 
@@ -153,6 +168,7 @@ impl Plan {
 /// How many patches there are of each class.
 struct Census {
     regular: usize,
+    gregory: usize,
     classes: Vec<usize>,
     /// Irregular patches without a class.
     classless: usize,
@@ -162,16 +178,18 @@ struct Census {
 
 impl Census {
     fn new<S: PatchSource + ?Sized>(source: &S) -> Census {
-        let mut census = Census { regular: 0, classes: vec![0; source.classes().len()], classless: 0, eigenvalues: 0 };
+        let mut census =
+            Census { regular: 0, gregory: 0, classes: vec![0; source.classes().len()], classless: 0, eigenvalues: 0 };
         let mut eigenvalues = HashSet::new();
         for patch in 0..source.count() {
-            match (source.is_irregular(patch), source.class(patch)) {
-                (false, _) => census.regular += 1,
-                (true, Some(class)) => {
+            match (source.storage(patch), source.class(patch)) {
+                (Storage::Regular, _) => census.regular += 1,
+                (Storage::Gregory, _) => census.gregory += 1,
+                (Storage::Irregular, Some(class)) => {
                     census.classes[class] += 1;
                     eigenvalues.insert(source.classes()[class].lambda.to_bits());
                 }
-                (true, None) => census.classless += 1,
+                (Storage::Irregular, None) => census.classless += 1,
             }
         }
         census.eigenvalues = eigenvalues.len() + usize::from(census.classless > 0);

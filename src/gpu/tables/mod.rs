@@ -22,10 +22,11 @@ mod pack;
 mod source;
 
 pub use layout::{BUDGET, TableLayout, bytes};
-pub use source::{PatchNet, PatchNets, PatchSource};
+pub use source::{PatchNet, PatchNets, PatchSource, Storage, TableNet};
 
 use super::GpuError;
 use super::device::Device;
+use super::shader::Content;
 use crate::stam::{ClassTable, LEVELS, WINDOW_POINTS};
 use glam::DVec3;
 use layout::Plan;
@@ -48,6 +49,7 @@ pub struct Tables {
     pub(super) source: Arc<dyn PatchSource>,
     bounds: [DVec3; 2],
     layout: TableLayout,
+    has_gregory: bool,
     size: u64,
     unit: f64,
 }
@@ -81,6 +83,15 @@ impl Tables {
     /// How irregular patches are stored; never [`TableLayout::Auto`].
     pub fn layout(&self) -> TableLayout {
         self.layout
+    }
+
+    /// What the passes that read them are compiled for.
+    pub(super) fn content(&self) -> Content {
+        match self.layout {
+            _ if self.has_gregory => Content::Gregory,
+            TableLayout::Expanded => Content::Points,
+            _ => Content::Tails,
+        }
     }
 
     /// Bytes on the adapter.
@@ -137,6 +148,7 @@ pub(super) fn upload<S: PatchSource + ?Sized>(
         source: source.shared(),
         bounds,
         layout: plan.layout,
+        has_gregory: plan.has_gregory,
         unit,
     })
 }

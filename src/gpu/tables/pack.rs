@@ -2,11 +2,11 @@
 
 use super::basis::Basis;
 use super::layout::Plan;
-use super::{PatchNet, PatchSource, TABLE_LEVELS};
+use super::{PatchNet, PatchSource, TABLE_LEVELS, TableNet};
+use crate::adaptive::Gregory;
 use crate::gpu::GpuError;
 use crate::gpu::device::Device;
-use crate::gpu::shader::{KIND_IRREGULAR, KIND_REGULAR, SCALE_LEVELS};
-use crate::stam::Net;
+use crate::gpu::shader::{KIND_GREGORY, KIND_IRREGULAR, KIND_REGULAR, SCALE_LEVELS};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -64,7 +64,7 @@ pub(super) fn pack<S: PatchSource + ?Sized>(
         let start = next;
         while records.len() + jobs.len() < count && next - start < BATCH {
             let patch = records.len() + jobs.len();
-            let size = plan.patch_texels(source.is_irregular(patch), source.class(patch));
+            let size = plan.patch_texels(source.storage(patch), source.class(patch));
             jobs.push((patch, next, size));
             next += size;
         }
@@ -123,9 +123,15 @@ fn place_matrix(basis: &Basis, texels: &mut [[f32; 4]]) {
     }
 }
 
+/// The points of a 4x4 net relative to the sixth, each row but the first as its difference from the one before: see
+/// shaders/shared/tables.wgsl.
+fn differences(points: &[DVec3; 16]) -> [DVec3; 16] {
+    std::array::from_fn(|k| points[k] - if k < 4 { points[5] } else { points[k - 4] })
+}
+
 /// Writes the texels of one patch; the record lacks what other patches decide.
 fn place(net: PatchNet, expanded: usize, basis: Option<&Basis>, texels: &mut [[f32; 4]], unit: f64) -> Placed {
-    let PatchNet { levels: cell, transition, net, normal } = net;
+    let PatchNet { levels: cell, transition, net } = net;
     let mut at = 0;
     let mut row = |points: &[DVec3]| {
         let local: [DVec3; 4] = std::array::from_fn(|k| points[k] / unit);
@@ -135,15 +141,16 @@ fn place(net: PatchNet, expanded: usize, basis: Option<&Basis>, texels: &mut [[f
         at += 3;
     };
     let (origin, kind, levels, groups, lambda) = match net {
-        Net::Regular(points) => {
-            let origin = points[5];
-            // Each row but the first as its difference from the one before: see shaders/shared/tables.wgsl.
-            let before = |k: usize| if k < 4 { origin } else { points[k - 4] };
-            let rows: [DVec3; 16] = std::array::from_fn(|k| points[k] - before(k));
-            rows.chunks_exact(4).for_each(row);
-            (origin, KIND_REGULAR, 0, 0, None)
+        TableNet::Regular(points) => {
+            differences(&points).chunks_exact(4).for_each(row);
+            (points[5], KIND_REGULAR, 0, 0, None)
         }
-        Net::Irregular { limit, lambda, levels } => {
+        TableNet::Gregory(Gregory { bezier, spread }) => {
+            differences(&bezier).chunks_exact(4).for_each(&mut row);
+            row(&spread);
+            (bezier[5], KIND_GREGORY, 0, 0, None)
+        }
+        TableNet::Irregular { limit, normal, lambda, levels } => {
             let stored = if basis.is_some() { expanded } else { levels.len().min(TABLE_LEVELS) };
             levels[..stored].iter().for_each(|grid| WINDOW_ROWS.iter().for_each(|&i| row(&grid[i..i + 4])));
             let mut picked: Vec<DVec3> =

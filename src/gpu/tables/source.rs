@@ -1,6 +1,8 @@
 //! Where patches come from.
 
-use crate::stam::{ClassTable, LimitSurface, Net, Rings};
+use crate::adaptive::{AdaptivePatches, Gregory};
+use crate::osd::FarNet;
+use crate::stam::{ClassTable, LimitSurface, Net, Rings, WINDOW_POINTS};
 use glam::DVec3;
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -12,13 +14,43 @@ pub struct PatchNet {
     pub levels: [u8; 2],
     /// As [`Patch::transition`](crate::patch::Patch::transition).
     pub transition: u8,
-    /// Control net, with 1 to [`TABLE_LEVELS`](super::TABLE_LEVELS) levels where it is irregular.
-    pub net: Net,
-    /// Limit normal at local (0,0) of an irregular patch.
-    pub normal: DVec3,
+    /// Control points.
+    pub net: TableNet,
 }
 
-/// The B-spline nets that a patch consists of.
+/// The control points of a patch, as the tables want them.
+#[derive(Debug, Clone)]
+#[expect(clippy::large_enum_variant, reason = "a net is a value on its way into a table")]
+pub enum TableNet {
+    /// A uniform bicubic B-spline, u fastest.
+    Regular([DVec3; 16]),
+    /// Levels of a Stam table.
+    Irregular {
+        /// s0, the limit position at local (0,0).
+        limit: DVec3,
+        /// Limit normal there.
+        normal: DVec3,
+        /// Subdominant eigenvalue.
+        lambda: f64,
+        /// As [`Net::Irregular`], 1 to [`TABLE_LEVELS`](super::TABLE_LEVELS) of them.
+        levels: Vec<[DVec3; WINDOW_POINTS]>,
+    },
+    /// An end cap of OpenSubdiv.
+    Gregory(Gregory),
+}
+
+/// What the tables take for a patch.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Storage {
+    /// 16 points.
+    Regular,
+    /// A table of levels.
+    Irregular,
+    /// 16 points and 4 differences.
+    Gregory,
+}
+
+/// The nets that a patch consists of.
 #[derive(Debug)]
 #[expect(clippy::large_enum_variant, reason = "a net is a value on its way to be cut; a box each would cost more")]
 pub enum PatchNets<'a> {
@@ -26,14 +58,16 @@ pub enum PatchNets<'a> {
     Regular([DVec3; 16]),
     /// Three windows a level.
     Irregular(Rings<'a>),
+    /// A Bezier net with inner points that depend on (u,v).
+    Gregory(Gregory),
 }
 
-/// Where patches come from: the limit surface, or regular nets.
+/// Where patches come from: the limit surface, OpenSubdiv's own patches, or regular nets.
 pub trait PatchSource: Debug + Send + Sync {
     /// Number of patches.
     fn count(&self) -> usize;
-    /// Whether a patch has a table of levels.
-    fn is_irregular(&self, patch: usize) -> bool;
+    /// How a patch is stored.
+    fn storage(&self, patch: usize) -> Storage;
     /// The classes whose matrices patches share; none if every irregular patch is to be stored level by level.
     fn classes(&self) -> &[ClassTable];
     /// Index into [`classes`](Self::classes) of an irregular patch.
@@ -42,6 +76,8 @@ pub trait PatchSource: Debug + Send + Sync {
     fn patch(&self, patch: usize, levels: usize) -> PatchNet;
     /// The nets of a patch.
     fn nets(&self, patch: usize) -> PatchNets<'_>;
+    /// Ptex face and its parameters at those of a patch.
+    fn to_ptex(&self, patch: usize, uv: [f64; 2]) -> (u32, [f64; 2]);
     /// A box round the surface; any box if there are no patches.
     fn bounds(&self) -> [DVec3; 2];
     /// The source itself, to be kept: pictures are made from its nets.
@@ -53,8 +89,8 @@ impl PatchSource for LimitSurface {
         self.patches().len()
     }
 
-    fn is_irregular(&self, patch: usize) -> bool {
-        self.class(patch).is_some()
+    fn storage(&self, patch: usize) -> Storage {
+        if self.class(patch).is_some() { Storage::Irregular } else { Storage::Regular }
     }
 
     fn classes(&self) -> &[ClassTable] {
@@ -66,12 +102,14 @@ impl PatchSource for LimitSurface {
     }
 
     fn patch(&self, patch: usize, levels: usize) -> PatchNet {
-        let normal = match PatchSource::is_irregular(self, patch) {
-            true => self.evaluate(patch, [0.0, 0.0]).normal,
-            false => DVec3::ZERO,
-        };
         let record = self.patches()[patch];
-        PatchNet { levels: record.levels(), transition: record.transition, net: self.net(patch, levels), normal }
+        let net = match self.net(patch, levels) {
+            Net::Regular(points) => TableNet::Regular(points),
+            Net::Irregular { limit, lambda, levels } => {
+                TableNet::Irregular { limit, normal: self.evaluate(patch, [0.0, 0.0]).normal, lambda, levels }
+            }
+        };
+        PatchNet { levels: record.levels(), transition: record.transition, net }
     }
 
     fn nets(&self, patch: usize) -> PatchNets<'_> {
@@ -79,6 +117,11 @@ impl PatchSource for LimitSurface {
             Some(rings) => PatchNets::Irregular(rings),
             None => PatchNets::Regular(self.regular_net(patch)),
         }
+    }
+
+    fn to_ptex(&self, patch: usize, uv: [f64; 2]) -> (u32, [f64; 2]) {
+        let patch = self.patches()[patch];
+        (patch.ptex, patch.to_ptex(uv))
     }
 
     fn bounds(&self) -> [DVec3; 2] {
@@ -96,8 +139,8 @@ impl PatchSource for Vec<[DVec3; 16]> {
         self.len()
     }
 
-    fn is_irregular(&self, _: usize) -> bool {
-        false
+    fn storage(&self, _: usize) -> Storage {
+        Storage::Regular
     }
 
     fn classes(&self) -> &[ClassTable] {
@@ -109,11 +152,15 @@ impl PatchSource for Vec<[DVec3; 16]> {
     }
 
     fn patch(&self, patch: usize, _: usize) -> PatchNet {
-        PatchNet { levels: [0; 2], transition: 0, net: Net::Regular(self[patch]), normal: DVec3::ZERO }
+        PatchNet { levels: [0; 2], transition: 0, net: TableNet::Regular(self[patch]) }
     }
 
     fn nets(&self, patch: usize) -> PatchNets<'_> {
         PatchNets::Regular(self[patch])
+    }
+
+    fn to_ptex(&self, patch: usize, uv: [f64; 2]) -> (u32, [f64; 2]) {
+        (patch as u32, uv)
     }
 
     fn bounds(&self) -> [DVec3; 2] {
@@ -121,6 +168,56 @@ impl PatchSource for Vec<[DVec3; 16]> {
             .iter()
             .fold(None, |bounds: Option<[DVec3; 2]>, &p| Some(bounds.map_or([p, p], |[a, b]| [a.min(p), b.max(p)])))
             .unwrap_or([DVec3::ZERO, DVec3::ONE])
+    }
+
+    fn shared(&self) -> Arc<dyn PatchSource> {
+        Arc::new(self.clone())
+    }
+}
+
+impl PatchSource for AdaptivePatches {
+    fn count(&self) -> usize {
+        self.patches().len()
+    }
+
+    fn storage(&self, patch: usize) -> Storage {
+        match self.patches()[patch].net {
+            FarNet::BSpline(_) => Storage::Regular,
+            FarNet::Gregory(_) => Storage::Gregory,
+        }
+    }
+
+    fn classes(&self) -> &[ClassTable] {
+        &[]
+    }
+
+    fn class(&self, _: usize) -> Option<usize> {
+        None
+    }
+
+    fn patch(&self, patch: usize, _: usize) -> PatchNet {
+        let record = &self.patches()[patch];
+        let net = match &record.net {
+            FarNet::BSpline(net) => TableNet::Regular(*net),
+            FarNet::Gregory(points) => TableNet::Gregory(Gregory::new(points)),
+        };
+        PatchNet { levels: [record.level; 2], transition: record.transition, net }
+    }
+
+    fn nets(&self, patch: usize) -> PatchNets<'_> {
+        match &self.patches()[patch].net {
+            FarNet::BSpline(net) => PatchNets::Regular(*net),
+            FarNet::Gregory(points) => PatchNets::Gregory(Gregory::new(points)),
+        }
+    }
+
+    fn to_ptex(&self, patch: usize, uv: [f64; 2]) -> (u32, [f64; 2]) {
+        let patch = &self.patches()[patch];
+        (patch.ptex, patch.to_ptex(uv))
+    }
+
+    fn bounds(&self) -> [DVec3; 2] {
+        self.bounds()
     }
 
     fn shared(&self) -> Arc<dyn PatchSource> {

@@ -4,7 +4,7 @@ use super::{Answer, Judge};
 use crate::mesh::{Boundary, Creasing, SubdivMesh};
 use crate::stam::{Jet, LimitSurface};
 use crate::verify::Sample;
-use crate::verify::bin::{Check, Difference, Normal, angle_deg};
+use crate::verify::difference::{Check, Difference, Normal, angle_deg};
 use crate::verify::rounding::turn_deg;
 use glam::DVec3;
 use serde::Serialize;

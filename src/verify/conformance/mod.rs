@@ -11,11 +11,13 @@ pub use diagnosis::Finding;
 pub use report::{Quantity, Results};
 pub use samples::{DEFAULT_PER_FACE, sample_set};
 
-use super::bin::{Bins, CAP, Check, Difference, Key, Normal, larger};
-use super::{MeshReport, Sample, Subject, VerifyError, rounding};
+use super::bin::{Bins, CAP};
+use super::difference::{Check, Difference, Normal, larger};
+use super::key::{Against, Key, TierName};
+use super::{MeshReport, Sample, Subject, VerifyError, judgeable, rounding};
 use crate::mesh::SubdivMesh;
-use crate::osd::{Answer as FarAnswer, Far, MAX_ISOLATION, Reference};
-use crate::stam::{Jet, LimitSurface, Window};
+use crate::osd::{Answer as FarAnswer, Far, MAX_ISOLATION};
+use crate::stam::{Jet, Window};
 use glam::DVec3;
 use rayon::prelude::*;
 use report::Collected;
@@ -84,8 +86,8 @@ impl Default for Terms {
 /// # Panics
 /// An answer names a ptex face that the mesh does not have.
 pub fn conformance(mesh: &SubdivMesh, answers: &[Answer], terms: &Terms) -> Result<MeshReport, VerifyError> {
-    let surface = LimitSurface::new(mesh)?;
-    let subject = Subject::new(mesh, &surface)?;
+    let surface = judgeable(mesh, None)?;
+    let subject = Subject::new(mesh, &surface);
     let exact: Vec<Option<(usize, Jet)>> =
         answers.par_iter().map(|a| surface.evaluate_ptex(a.at.face, [a.at.u, a.at.v])).collect();
     let places: Vec<_> = answers.iter().map(|a| (a.at.face, a.at.u, a.at.v)).collect();
@@ -96,40 +98,37 @@ pub fn conformance(mesh: &SubdivMesh, answers: &[Answer], terms: &Terms) -> Resu
     let mut failing = Vec::new();
     for ((answer, exact), far) in answers.iter().zip(&exact).zip(&far) {
         let kind = exact.map(|(patch, _)| surface.kind(patch));
-        let key = |reference| Key { tier: "results", reference, kind, known_wrong: None };
+        let key = |against| Key::new(TierName::Results, against, kind);
+        let place = subject.place(answer.at, exact.map(|(patch, _)| patch));
         let (Some((patch, jet)), Some(_)) = (exact, answer.position) else {
             if exact.is_some() != answer.position.is_some() {
-                bins.mismatch(key(LIMIT), answer.at);
-                collected.mismatch(key(LIMIT));
+                bins.mismatch(key(Against::Limit), place);
+                collected.mismatch(key(Against::Limit));
                 failing.extend(answer.position.map(|_| (*answer, None)));
             }
             continue;
         };
-        let mut compare = |reference, jet: &Jet, cell: f64| {
+        let mut compare = |against, jet: &Jet, cell: f64| {
             let difference = judge.difference(answer, *patch, jet, cell);
-            bins.add(key(reference), answer.at, difference);
-            collected.add(key(reference), answer.at, &difference);
+            bins.add(key(against), place, difference);
+            collected.add(key(against), answer.at, &difference);
             difference
         };
-        let difference = compare(LIMIT, jet, 1.0);
+        let difference = compare(Against::Limit, jet, 1.0);
         failing.push((*answer, Some((*jet, difference))));
         if far.answer == FarAnswer::Regular {
             let normal = far.du.cross(far.dv);
-            compare(FAR, &Jet { position: far.position, du: far.du, dv: far.dv, normal }, far.cell);
+            compare(Against::Far, &Jet { position: far.position, du: far.du, dv: far.dv, normal }, far.cell);
         }
     }
     let diagnosis = diagnosis::find(&judge, &failing);
     let results = collected.finish(&surface, answers, terms, diagnosis);
-    let mut report = MeshReport::new(mesh, &surface, bins);
+    let mut report = MeshReport::new(mesh, &surface, bins, Vec::new());
+    report.timings = None;
     report.pass &= results.complete && results.answered > 0;
     report.results = Some(results);
     Ok(report)
 }
-
-/// Our own evaluation in f64.
-const LIMIT: &str = "limit";
-/// OpenSubdiv where it is exact: in regular patches.
-const FAR: &str = "Far level 10";
 
 /// Compares single answers.
 struct Judge<'a> {

@@ -1,9 +1,10 @@
 //! What a report says about answers: coverage, errors by quantity, diagnosis.
 
-use super::{Answer, Finding, LIMIT, Sample, Terms, Tolerances, sample_set};
+use super::{Answer, Finding, Sample, Terms, Tolerances, sample_set};
 use crate::patch::PatchKind;
 use crate::stam::LimitSurface;
-use crate::verify::bin::{Check, Difference, Key, Normal};
+use crate::verify::difference::{Check, Difference, Normal};
+use crate::verify::key::{Against, Key};
 use serde::Serialize;
 use std::collections::{BTreeMap, HashSet};
 use std::fmt;
@@ -84,7 +85,7 @@ impl Errors {
 }
 
 /// In the order of the report: the exact limit first, then kind and quantity.
-type Row = (bool, &'static str, Option<PatchKind>, usize);
+type Row = (Against, Option<PatchKind>, usize);
 
 const QUANTITIES: [&str; 3] = ["position", "normal", "derivative"];
 
@@ -98,7 +99,7 @@ pub(super) struct Collected {
 impl Collected {
     pub fn add(&mut self, key: Key, at: Sample, difference: &Difference) {
         let Difference { position, normal, derivative } = *difference;
-        let row = |quantity| (key.reference != LIMIT, key.reference, key.kind, quantity);
+        let row = |quantity| (key.against, key.kind, quantity);
         let normal_check = match normal {
             Normal::Judged(check) => Some(check),
             Normal::Skipped | Normal::Unknown => None,
@@ -151,7 +152,7 @@ impl Collected {
     }
 }
 
-fn quantity(((_, reference, kind, quantity), mut found): (Row, Errors)) -> Quantity {
+fn quantity(((against, kind, quantity), mut found): (Row, Errors)) -> Quantity {
     found.errors.sort_by(f64::total_cmp);
     // Not a number sorts behind infinity, as it must: it is the worst. So does it with a sign.
     let negative = found.errors.partition_point(|error| error.is_nan() && error.is_sign_negative());
@@ -161,7 +162,7 @@ fn quantity(((_, reference, kind, quantity), mut found): (Row, Errors)) -> Quant
     let [p50, p99, max] = [0.5, 0.99, 1.0].map(|part| at(part).copied().unwrap_or(0.0));
     Quantity {
         kind: kind.map_or("hole", PatchKind::name),
-        reference,
+        reference: against.name(),
         quantity: QUANTITIES[quantity],
         samples: count,
         failed: found.failed,
