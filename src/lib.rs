@@ -9,6 +9,7 @@
 //! * [`adaptive`]: OpenSubdiv's own patches, end caps included, as other programs show them;
 //! * [`field`]: cameras, lights and what a surface mirrors;
 //! * [`gpu`]: the same limit for every pixel, in a fragment pipeline;
+//! * [`compare`]: how far a picture of other patches is from the exact one;
 //! * [`verify`]: all of it compared with OpenSubdiv;
 //! * [`output`]: files, written whole or not at all;
 //! * [`cli`]: the command line.
@@ -25,6 +26,7 @@
 
 pub mod adaptive;
 pub mod cli;
+pub mod compare;
 pub mod field;
 pub mod gpu;
 pub mod mesh;
