@@ -11,9 +11,9 @@ use crate::stam::Jet;
 
 /// Ten levels of refinement, each summed anew on both sides: ten times tier `vertex`. Rounding of world coordinates comes
 /// on top ([`Rounding`](super::rounding::Rounding)).
-const POSITION: f64 = 1e-11;
-const NORMAL_DEG: f64 = 1e-6;
-const DERIVATIVE: f64 = 1e-10;
+pub(super) const POSITION: f64 = 1e-11;
+pub(super) const NORMAL_DEG: f64 = 1e-6;
+pub(super) const DERIVATIVE: f64 = 1e-10;
 
 /// What a position may be off where the end cap is known to be wrong. Not derived: it tells gross errors of ours from
 /// OpenSubdiv's, of which the largest found is 2.2e-5.

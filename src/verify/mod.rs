@@ -4,6 +4,7 @@
 //! Every tier bins its samples by patch kind and names the worst one. Where the reference itself is known to be wrong,
 //! the samples are kept apart with the reason ([`KnownWrong`]) and held to what any wrong reference can be off.
 
+mod baseline;
 mod bin;
 mod clock;
 pub mod conformance;
@@ -13,6 +14,7 @@ mod endcap;
 mod failures;
 mod fragment;
 mod histogram;
+mod junit;
 mod key;
 mod only;
 mod only_text;
@@ -24,6 +26,7 @@ mod rounding;
 mod text;
 mod vertex;
 
+pub use baseline::{Baseline, BaselineError, Comparison, Regression};
 pub use clock::Timing;
 pub use difference::Sample;
 pub use failures::{FailedPatch, Failures};

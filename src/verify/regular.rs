@@ -11,7 +11,7 @@ use crate::stam::Jet;
 
 /// Position as at vertices; a derivative may lose five times as much, OpenSubdiv's own rule for its regressions.
 /// Rounding of world coordinates comes on top ([`Rounding`](super::rounding::Rounding)).
-const TOLERANCES: [f64; 3] = [1e-12, 1e-6, 5e-12];
+pub(super) const TOLERANCES: [f64; 3] = [1e-12, 1e-6, 5e-12];
 
 const PER_FACE: usize = 32;
 const BUDGET: usize = 200_000;

@@ -1,5 +1,6 @@
 //! The report: what JSON, JUnit and the terminal show.
 
+use super::baseline::{Baseline, Comparison};
 use super::bin::{Bin, Bins, FailedPatches, note};
 use super::clock::Timing;
 use super::conformance::Results;
@@ -143,26 +144,39 @@ pub struct Report {
     pub refused: Vec<Refused>,
     /// Refused meshes do not fail the run.
     pub refused_allowed: bool,
+    /// Comparison with an earlier run, if one was asked for.
+    pub baseline: Option<Comparison>,
 }
 
 impl Report {
     /// Version of the JSON form; it grows when a reader of the old one would be misled.
     pub const SCHEMA: u32 = 2;
 
-    /// Collects mesh reports.
-    pub fn new(size: [u32; 2], meshes: Vec<MeshReport>, refused: Vec<Refused>, refused_allowed: bool) -> Self {
-        let pass = meshes.iter().all(|mesh| mesh.pass) && (refused_allowed || refused.is_empty());
+    /// Collects mesh reports, of views of `size`, and the meshes that were refused.
+    pub fn new(size: [u32; 2], meshes: Vec<MeshReport>, refused: Vec<Refused>) -> Self {
+        let version = env!("CARGO_PKG_VERSION");
         let opensubdiv = crate::osd::version();
-        Self {
-            schema: Self::SCHEMA,
-            version: env!("CARGO_PKG_VERSION"),
-            opensubdiv,
-            pass,
-            size,
-            meshes,
-            refused,
-            refused_allowed,
-        }
+        let (schema, refused_allowed, baseline) = (Self::SCHEMA, false, None);
+        let report = Self { schema, version, opensubdiv, pass: true, size, meshes, refused, refused_allowed, baseline };
+        report.judged()
+    }
+
+    /// Lets refused meshes pass.
+    pub fn allow_refused(self) -> Self {
+        Self { refused_allowed: true, ..self }.judged()
+    }
+
+    /// Fails on what is worse than in an earlier run, whose report is in the file `path`.
+    pub fn with_baseline(self, path: String, baseline: &Baseline) -> Self {
+        let comparison = Some(baseline.compare(path, &self.meshes));
+        Self { baseline: comparison, ..self }.judged()
+    }
+
+    fn judged(self) -> Self {
+        let meshes = self.meshes.iter().all(|mesh| mesh.pass);
+        let refused = self.refused_allowed || self.refused.is_empty();
+        let baseline = self.baseline.as_ref().is_none_or(|comparison| comparison.regressions.is_empty());
+        Self { pass: meshes && refused && baseline, ..self }
     }
 }
 

@@ -1,5 +1,6 @@
 //! The report as text.
 
+use super::baseline::{Comparison, Regression};
 use super::difference::Sample;
 use super::failures::counted;
 use super::report::{MeshReport, Report, Tier};
@@ -133,6 +134,17 @@ impl fmt::Display for Tier {
             Some(Sample { face, u, v }) => write!(f, "  {face},{u},{v}"),
             None => Ok(()),
         }
+    }
+}
+
+impl fmt::Display for Comparison {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let count = counted(self.regressions.len(), "regression", "regressions");
+        writeln!(f, "baseline {}: {} compared, {count}", self.path, counted(self.rows_compared, "row", "rows"))?;
+        self.regressions.iter().try_for_each(|Regression { mesh, row, what }| {
+            let row = row.as_ref().map(|row| format!("{row}: ")).unwrap_or_default();
+            writeln!(f, "  worse  {mesh}: {row}{what}")
+        })
     }
 }
 

@@ -10,8 +10,8 @@ use glam::DVec3;
 
 /// Some 20 roundings of 1e-16 on each side, level by level. Normals: OpenSubdiv's tangents are differences of world
 /// coordinates. Rounding of world coordinates comes on top ([`Rounding`](super::rounding::Rounding)).
-const POSITION: f64 = 1e-12;
-const NORMAL_DEG: f64 = 1e-6;
+pub(super) const POSITION: f64 = 1e-12;
+pub(super) const NORMAL_DEG: f64 = 1e-6;
 
 /// Vertices that a uniform refinement may have: memory, and seconds.
 const BUDGET: usize = 400_000;

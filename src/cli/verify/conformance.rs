@@ -1,7 +1,7 @@
 //! `verify --samples-out` and `--results`: the conformance test of other programs.
 
 use super::super::{Failure, args::VerifyArgs, rows::shortest, write_out};
-use super::{answers, inputs::Input, write_json};
+use super::{answers, inputs::Input, write_files};
 use crate::output::write_whole;
 use crate::stam::LimitSurface;
 use crate::verify::conformance::{DEFAULT_PER_FACE, Terms, Tolerances, conformance, sample_set};
@@ -78,10 +78,8 @@ pub(super) fn run(args: &VerifyArgs, inputs: &[Input]) -> Result<(), Failure> {
     let mut report = conformance(&mesh, &answers, &terms).map_err(|error| Failure::of(&mesh, error))?;
     report.set_source(input.source().as_deref(), "catoptric verify");
     write_out(None, text(path, &report).as_bytes())?;
-    let report = Report::new(args.size, vec![report], Vec::new(), false);
-    if let Some(path) = &args.json {
-        write_json(path, &report)?;
-    }
+    let report = Report::new(args.size, vec![report], Vec::new());
+    write_files(args, &report)?;
     write_out(None, format!("{}\n", report.verdict()).as_bytes())?;
     if report.pass { Ok(()) } else { Err(Failure::Check) }
 }

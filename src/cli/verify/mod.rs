@@ -10,11 +10,11 @@ use super::{Failure, write_out};
 use crate::gpu::Gpu;
 use crate::osd::Location;
 use crate::output::check_writable;
-use crate::verify::{MeshReport, Refused, Report, Sample, only};
+use crate::verify::{Baseline, MeshReport, Refused, Report, Sample, only};
 pub(super) use conformance::ConformanceArgs;
 use inputs::Input;
 use many::{Job, Outcome};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
@@ -22,6 +22,7 @@ pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
     for path in [&args.json, &args.junit, &args.conformance.samples_out].into_iter().flatten() {
         check_writable(path)?;
     }
+    let baseline = args.baseline.as_deref().map(|path| read_baseline(path, args.size)).transpose()?;
     let inputs = inputs::find(&args.meshes)?;
     if args.conformance.asked() {
         return conformance::run(args, &inputs);
@@ -51,12 +52,37 @@ pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
         }
         Ok(())
     })?;
-    let report = Report::new(args.size, meshes, refused, args.allow_refused);
-    if let Some(path) = &args.json {
-        write_json(path, &report)?;
+    let mut report = Report::new(args.size, meshes, refused);
+    if args.allow_refused {
+        report = report.allow_refused();
+    }
+    if let Some((path, baseline)) = args.baseline.as_ref().zip(baseline) {
+        report = report.with_baseline(path.display().to_string(), &baseline);
+    }
+    write_files(args, &report)?;
+    if let Some(comparison) = &report.baseline {
+        write_out(None, comparison.to_string().as_bytes())?;
     }
     write_out(None, format!("{} ({:.1} s)\n", report.verdict(), start.elapsed().as_secs_f64()).as_bytes())?;
     if report.pass { Ok(()) } else { Err(Failure::Check) }
+}
+
+/// Writes the report as the files that were asked for.
+fn write_files(args: &VerifyArgs, report: &Report) -> Result<(), Failure> {
+    if let Some(path) = &args.json {
+        write_json(path, report)?;
+    }
+    if let Some(path) = &args.junit {
+        let text = report.junit().map_err(|error| Failure::Bad(format!("{}: {error}", path.display())))?;
+        write_out(Some(path), text.as_bytes())?;
+    }
+    Ok(())
+}
+
+fn read_baseline(path: &Path, size: [u32; 2]) -> Result<Baseline, Failure> {
+    let bad = |what: String| Failure::Bad(format!("{}: {what}", path.display()));
+    let json = std::fs::read(path).map_err(|error| bad(format!("cannot be read ({error}); give an earlier report")))?;
+    Baseline::read(&json, size).map_err(|error| bad(error.to_string()))
 }
 
 /// `--only`: all evaluations of one point. It shows, and judges nothing.

@@ -176,6 +176,16 @@ fn quantity(((against, kind, quantity), mut found): (Row, Errors)) -> Quantity {
 }
 
 impl Results {
+    /// What of the standard set is missing, if that matters.
+    pub fn missing(&self) -> Option<String> {
+        let Sample { face, u, v } = self.first_unanswered.filter(|_| !self.complete)?;
+        let missing = self.standard - self.standard_answered;
+        Some(format!(
+            "{missing} of {} standard samples without an answer, the first is face {face} u {u} v {v}; answer them, or say --partial",
+            self.standard
+        ))
+    }
+
     /// Answers that are beyond a tolerance, or right to refuse.
     fn failed(&self) -> usize {
         self.quantities.iter().map(|q| q.failed).sum::<usize>() + self.refused + self.in_holes
@@ -208,12 +218,8 @@ impl fmt::Display for Results {
                 self.in_holes
             )?;
         }
-        if let Some(Sample { face, u, v }) = self.first_unanswered.filter(|_| !self.complete) {
-            let missing = standard - standard_answered;
-            writeln!(
-                f,
-                "  FAIL: {missing} standard samples without an answer, the first is face {face} u {u} v {v}; answer them, or say --partial"
-            )?;
+        if let Some(missing) = self.missing() {
+            writeln!(f, "  FAIL: {missing}")?;
         }
         for finding in &self.diagnosis {
             writeln!(f, "  diagnosis: {finding}")?;
