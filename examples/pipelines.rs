@@ -12,7 +12,7 @@ mod paper;
 mod scene;
 
 use catoptric::gpu::Pipeline;
-use measure::Reference;
+use measure::{Reference, cells};
 use paper::{EXACT, Failure, drawn_by, exit};
 use std::path::Path;
 use std::process::ExitCode;
@@ -55,7 +55,8 @@ fn run() -> Result<(), Failure> {
             };
             let [gaps, missed] = errors.missed;
             let beyond = errors.beyond;
-            println!("| {level} | {name} | {gaps} | {missed} | {beyond} | {} | {} |", errors.normal, errors.lines);
+            let (normal, lines) = (cells(&errors.normal), cells(&errors.lines));
+            println!("| {level} | {name} | {gaps} | {missed} | {beyond} | {normal} | {lines} |");
         }
     }
     Ok(())

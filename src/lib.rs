@@ -7,8 +7,10 @@
 //! * [`patch`]: the refined faces whose limit has a closed form become patches;
 //! * [`stam`]: class tables give the exact limit anywhere, in f64 ([`stam::LimitSurface`]);
 //! * [`adaptive`]: OpenSubdiv's own patches, end caps included, as other programs show them;
+//! * [`statistics`]: what errors are summed up in;
 //! * [`field`]: cameras, lights and what a surface mirrors;
 //! * [`gpu`]: the same limit for every pixel, in a fragment pipeline;
+//! * [`compare`]: how far a picture of other patches is from the exact one;
 //! * [`verify`]: all of it compared with OpenSubdiv;
 //! * [`output`]: files, written whole or not at all;
 //! * [`cli`]: the command line.
@@ -25,6 +27,7 @@
 
 pub mod adaptive;
 pub mod cli;
+pub mod compare;
 pub mod field;
 pub mod gpu;
 pub mod mesh;
@@ -32,4 +35,5 @@ pub mod osd;
 pub mod output;
 pub mod patch;
 pub mod stam;
+pub mod statistics;
 pub mod verify;

@@ -5,6 +5,7 @@ use catoptric::field::Camera;
 use catoptric::gpu::{MAX_PROXY_LEVEL, NO_PATCH, SurfaceImage, View};
 use catoptric::patch::Adjacency;
 use catoptric::stam::Jet;
+use catoptric::statistics::Spread;
 use glam::{DMat2, DVec2, DVec3};
 use rayon::prelude::*;
 
@@ -28,9 +29,6 @@ pub struct Reference {
     /// `None` where there is no surface, or Newton's method found none.
     points: Vec<Option<Point>>,
 }
-
-/// Mean, 99th percentile and maximum.
-pub struct Spread(pub [f64; 3]);
 
 /// Errors of a picture.
 pub struct Errors {
@@ -183,39 +181,19 @@ struct Place {
     outside: bool,
 }
 
-/// Derivatives of pixel coordinates by u and v.
+/// Derivatives of pixel coordinates by u and v; NaN behind the eye.
 fn screen(camera: &Camera, jet: &Jet) -> DMat2 {
-    let by = |tangent: DVec3| {
-        // Central difference over a ten-millionth of the distance: good to some 1e-9.
-        let step = 1e-7 * jet.position.distance(camera.eye) / tangent.length();
-        let [a, b] = [1.0, -1.0].map(|sign| camera.project(jet.position + tangent * (sign * step)));
-        match (a, b) {
-            (Some(a), Some(b)) => (DVec2::from_array(a) - DVec2::from_array(b)) / (2.0 * step),
-            _ => DVec2::NAN,
-        }
+    camera.screen(jet.position, [jet.du, jet.dv]).unwrap_or(DMat2::NAN)
+}
+
+/// Mean, 99th percentile and maximum as cells of a Markdown table.
+pub fn cells(spread: &Spread) -> String {
+    let cell = |x: f64| match x {
+        0.0 => "0".to_owned(),
+        x if x < 0.001 => format!("{x:.0e}"),
+        x if x < 1.0 => format!("{x:.3}"),
+        x if x < 100.0 => format!("{x:.1}"),
+        x => format!("{x:.0}"),
     };
-    DMat2::from_cols(by(jet.du), by(jet.dv))
-}
-
-impl Spread {
-    fn of(mut values: Vec<f64>) -> Spread {
-        values.sort_by(f64::total_cmp);
-        let Some(&max) = values.last() else { return Spread([0.0; 3]) };
-        let mean = values.iter().sum::<f64>() / values.len() as f64;
-        Spread([mean, values[(values.len() * 99).div_ceil(100) - 1], max])
-    }
-}
-
-impl std::fmt::Display for Spread {
-    /// Cells of a Markdown table.
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let cell = |x: f64| match x {
-            0.0 => "0".to_owned(),
-            x if x < 0.001 => format!("{x:.0e}"),
-            x if x < 1.0 => format!("{x:.3}"),
-            x if x < 100.0 => format!("{x:.1}"),
-            x => format!("{x:.0}"),
-        };
-        f.write_str(&self.0.map(cell).join(" | "))
-    }
+    [spread.mean, spread.p99, spread.max].map(cell).join(" | ")
 }

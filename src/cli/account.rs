@@ -1,7 +1,7 @@
 //! What a `render` did: the certificates of its samples, and the time of each step.
 
-use super::Failure;
-use super::write_out;
+use super::compare::Compared;
+use super::{Failure, write_out};
 use crate::gpu::{Summary, Timings};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -14,6 +14,7 @@ pub(super) struct Account {
     steps: Vec<(&'static str, Duration)>,
     summary: Option<Summary>,
     pictures: usize,
+    comparisons: Vec<Compared>,
 }
 
 /// What `--json` writes.
@@ -25,6 +26,9 @@ struct Record<'a> {
     /// Samples a pixel each way.
     samples_per_pixel: u32,
     certificate: Option<Certified>,
+    /// With OpenSubdiv's patches, a picture each.
+    #[serde(skip_serializing_if = "<[Compared]>::is_empty")]
+    comparisons: &'a [Compared],
     /// Milliseconds.
     timings: BTreeMap<&'static str, f64>,
 }
@@ -82,6 +86,12 @@ impl Account {
         };
     }
 
+    /// A picture was compared with one of OpenSubdiv's patches.
+    pub fn compared(&mut self, compared: Compared) {
+        compared.say();
+        self.comparisons.push(compared);
+    }
+
     /// A line on standard error: how exact the pictures are.
     pub fn say_certificate(&self, samples_per_pixel: u32) {
         let Some(summary) = &self.summary else { return };
@@ -110,6 +120,7 @@ impl Account {
             pictures: self.pictures,
             samples_per_pixel,
             certificate: self.summary.as_ref().map(|summary| Certified::new(summary, samples_per_pixel)),
+            comparisons: &self.comparisons,
             timings: self.steps.iter().map(|&(name, time)| (name, time.as_secs_f64() * 1e3)).collect(),
         };
         let mut text = serde_json::to_vec_pretty(&record).map_err(std::io::Error::from)?;

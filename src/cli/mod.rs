@@ -2,9 +2,11 @@
 
 mod account;
 mod args;
+mod compare;
 mod eval;
 mod frames;
 mod info;
+mod patches;
 mod render;
 mod rig;
 mod settings;

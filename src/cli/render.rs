@@ -2,14 +2,14 @@
 
 use super::account::Account;
 use super::args::size;
+use super::compare::Pair;
 use super::frames::FramesArgs;
+use super::patches::PatchesArgs;
 use super::rig::RigArgs;
 use super::settings::{made_by, mesh_digest};
 use super::{Failure, Steps, load, progress};
 use crate::field::{Pattern, Picture, Scout};
-use crate::gpu::{
-    Gpu, MAX_ENLARGE, MAX_PROXY_LEVEL, MAX_SAMPLES, PatchSource, Pipeline, Stage, TableLayout, Tables, View, tables,
-};
+use crate::gpu::{Gpu, MAX_ENLARGE, MAX_PROXY_LEVEL, MAX_SAMPLES, Pipeline, Stage, TableLayout, Tables, View, tables};
 use crate::output::{Heat, Layers, check_writable, heat, read_exr_made_by, read_png_made_by, write_exr, write_png};
 use crate::stam::LimitSurface;
 use clap::{Args, ValueEnum};
@@ -42,6 +42,8 @@ pub(super) struct RenderArgs {
     /// Kind of the passes that evaluate and shade: the picture does not depend on it
     #[arg(long, value_enum, default_value = "auto")]
     stage: StageName,
+    #[command(flatten)]
+    pub(super) patches: PatchesArgs,
     /// How the tables of irregular patches are stored: auto, expanded, compact or hybrid
     #[arg(long = "tables", value_name = "LAYOUT", default_value_t)]
     pub(super) layout: TableLayout,
@@ -149,11 +151,16 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let format = Format::of(&args.output)?;
     args.rig.check()?;
     args.frames.check()?;
+    args.patches.check()?;
     if args.enlarge.is_some() && !matches!(args.pipeline, PipelineName::Points) {
         return Err(Failure::Bad("--enlarge is for --pipeline points; leave it out, or choose that one".to_owned()));
     }
     if args.show.is_some() && format == Format::Exr {
         return Err(Failure::Bad("--show colours a .png; an .exr has the residual as a channel anyway".to_owned()));
+    }
+    if args.patches.compare && (args.show.is_some() || format == Format::Exr) {
+        let what = if args.show.is_some() { "--show" } else { "an .exr" };
+        return Err(Failure::Bad(format!("--compare draws a .png of its own kind; it does not go with {what}")));
     }
     let paths = args.frames.paths(&args.output)?;
     check_writable(&paths[0])?;
@@ -191,7 +198,11 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
         return account.write(args.json.as_ref(), None, samples);
     }
     let gpu = account.time("adapter", Gpu::new)?;
-    let uploaded = account.time("tables", || gpu.upload_as(&surface, args.layout))?;
+    let uploaded = args.patches.upload(&mesh, &surface, args.layout, &gpu, &mut account)?;
+    let pair = match args.patches.compare {
+        true => Some(Pair::new(args, &mesh, &surface, &gpu, &uploaded, &mut account)?),
+        false => None,
+    };
     let steps = match &shots[..] {
         [_] => None,
         _ => Some(Steps::new(shots.len(), "frames")),
@@ -200,7 +211,10 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
         bar.finish_and_clear();
     }
     for shot in &shots {
-        shot.take(format, args.show, &gpu, &uploaded, &surface, &mut account)?;
+        match &pair {
+            Some(pair) => pair.take(shot.path, &shot.view, &shot.made_by, &mut account)?,
+            None => shot.take(format, args.show, &gpu, &uploaded, &mut account)?,
+        }
         steps.iter().for_each(Steps::done_one);
     }
     bar.finish_and_clear();
@@ -209,6 +223,10 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     account.write(args.json.as_ref(), Some(gpu.adapter()), samples)?;
     if args.timings {
         account.say_timings(gpu.adapter());
+        if !args.patches.draws_exact() {
+            eprintln!("{:<20} {:>12} bytes", "tables", uploaded.size());
+            return Ok(());
+        }
         for layout in TableLayout::ALL {
             let chosen = if layout == uploaded.layout() { ", chosen" } else { "" };
             eprintln!("{:<20} {:>12} bytes{chosen}", format!("tables {layout}"), tables::bytes(&surface, layout));
@@ -231,7 +249,6 @@ impl Shot<'_> {
         show: Option<ShowName>,
         gpu: &Gpu,
         tables: &Tables,
-        source: &dyn PatchSource,
         account: &mut Account,
     ) -> Result<(), Failure> {
         let Shot { path, view, made_by } = self;
@@ -257,7 +274,8 @@ impl Shot<'_> {
                 account.add(&colour.timings);
                 account.add(&seen.timings);
                 account.picture(colour.summary);
-                let layers = Layers { camera: &view.camera, colour: &colour, seen: &seen, source, made_by };
+                let layers =
+                    Layers { camera: &view.camera, colour: &colour, seen: &seen, source: tables.source(), made_by };
                 account.time("write", || write_exr(path, &layers))?;
             }
         }

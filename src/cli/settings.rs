@@ -55,6 +55,10 @@ pub(super) fn made_by(args: &RenderArgs, mesh: u64, view: &View) -> String {
     if view.enlarge != 1.0 {
         add("enlarge", view.enlarge.to_string());
     }
+    add("patches", args.patches.patches.to_string());
+    if let Some(end_caps) = &args.patches.end_caps {
+        add("end-caps", value_name(end_caps));
+    }
     add("tables", args.layout.to_string());
     if let Some(level) = view.proxy_level {
         add("proxy-level", level.to_string());
@@ -62,6 +66,9 @@ pub(super) fn made_by(args: &RenderArgs, mesh: u64, view: &View) -> String {
     add("samples", view.samples.to_string());
     if let Some(show) = &args.show {
         add("show", value_name(show));
+    }
+    if args.patches.compare {
+        text += " --compare";
     }
     let _ = write!(text, " # mesh {mesh:016x}");
     if let Pattern::Picture(picture) = &view.pattern {

@@ -1,6 +1,6 @@
 //! A camera in f64: a pinhole, or one with parallel lines of sight.
 
-use glam::{DVec3, dvec3};
+use glam::{DMat2, DVec2, DVec3, dvec3};
 
 /// Vertical field of view of a fitted camera, in degrees: a short telephoto lens, as product photographers use.
 pub const DEFAULT_FOV: f64 = 26.0;
@@ -198,6 +198,20 @@ impl Camera {
             [(ndc[0] + 1.0) * 0.5 * f64::from(self.size[0]), (1.0 - ndc[1]) * 0.5 * f64::from(self.size[1])]
         })
     }
+
+    /// Derivatives of pixel coordinates by u and v, as columns, at a point with these tangents; `None` behind the eye.
+    pub fn screen(&self, point: DVec3, tangents: [DVec3; 2]) -> Option<DMat2> {
+        let axes = self.axes();
+        let d = point - self.eye;
+        let depth = d.dot(axes.forward);
+        let (weight, slope) = if self.is_orthographic() { (1.0, 0.0) } else { (depth, 1.0) };
+        let scale =
+            DVec2::new(axes.scale[0], -axes.scale[1]) * 0.5 * DVec2::new(self.size[0].into(), self.size[1].into());
+        let flat = |v: DVec3| DVec2::new(v.dot(axes.right), v.dot(axes.up));
+        let [u, v] =
+            tangents.map(|t| scale * (flat(t) * weight - flat(d) * (slope * t.dot(axes.forward))) / (weight * weight));
+        (depth > 0.0).then(|| DMat2::from_cols(u, v))
+    }
 }
 
 /// Least and greatest value over points.
@@ -287,6 +301,23 @@ mod tests {
         (camera.eye.z, camera.target.z) = (-5.0, -6.0);
         let [near, far] = camera.depth_range(bounds);
         assert!(near == 0.0 && far > 0.0, "{near} {far}");
+    }
+
+    #[test]
+    fn screen_is_the_derivative_of_project() {
+        let points = corners([DVec3::ZERO, DVec3::ONE]);
+        let (point, tangents) = (dvec3(0.3, 0.9, 0.2), [dvec3(0.5, 0.1, -0.7), dvec3(-0.2, 0.8, 0.3)]);
+        for camera in [
+            Camera::fit(&points, [64, 48], DVec3::Y, DVec3::ONE, DEFAULT_FOV),
+            Camera::fit_orthographic(&points, [64, 48], DVec3::Y, DVec3::ONE),
+        ] {
+            let screen = camera.screen(point, tangents).unwrap();
+            for (k, t) in tangents.into_iter().enumerate() {
+                let [a, b] = [1e-6, -1e-6].map(|s| DVec2::from_array(camera.project(point + s * t).unwrap()));
+                assert!(((a - b) / 2e-6).distance(screen.col(k)) < 1e-7, "{screen}");
+            }
+            assert_eq!(camera.screen(camera.eye - camera.axes().forward, tangents), None);
+        }
     }
 
     #[test]

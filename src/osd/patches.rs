@@ -143,7 +143,7 @@ mod tests {
         let plane: [DVec3; 16] = std::array::from_fn(|k| DVec3::new((k % 4) as f64, (k / 4) as f64, 0.0));
         for boundary in 0..16u8 {
             let beyond = |k: usize| {
-                let edges = [k < 4, k % 4 == 3, k >= 12, k % 4 == 0];
+                let edges = [k < 4, k % 4 == 3, k >= 12, k.is_multiple_of(4)];
                 (0..4).any(|edge| boundary >> edge & 1 == 1 && edges[edge])
             };
             let mut net: [DVec3; 16] = std::array::from_fn(|k| if beyond(k) { DVec3::NAN } else { plane[k] });

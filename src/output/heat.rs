@@ -1,4 +1,4 @@
-//! Certificates as colours: how far each pixel's point is from its ray, and how it was found.
+//! Errors as colours, on scales that read in grey too: certificates, and whatever else is measured at every pixel.
 
 use crate::gpu::{Certificate, State, SurfaceImage};
 
@@ -12,10 +12,49 @@ pub enum Heat {
     Steps,
 }
 
-/// Residual in pixels at the dark end of the scale.
-pub const LEAST: f32 = 1e-6;
-/// Residual in pixels at the light end.
-pub const MOST: f32 = 1.0;
+/// A logarithmic scale of colours.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scale {
+    /// Value at the dark end; smaller ones have its colour.
+    pub least: f32,
+    /// Value at the light end; larger ones have its colour.
+    pub most: f32,
+}
+
+impl Scale {
+    /// Of residuals, in pixels.
+    pub const RESIDUAL: Scale = Scale { least: 1e-6, most: 1.0 };
+
+    /// Where a value stands, from 0 to 1.
+    pub fn place(&self, value: f32) -> f32 {
+        ((value.max(self.least) / self.least).log10() / (self.most / self.least).log10()).min(1.0)
+    }
+
+    /// The powers of ten on it.
+    pub fn exponents(&self) -> std::ops::RangeInclusive<i32> {
+        // A scale that begins at 1e-6 begins at a power of ten, whatever f32 makes of it.
+        const ROUNDING: f32 = 1e-4;
+        (self.least.log10() - ROUNDING).ceil() as i32..=(self.most.log10() + ROUNDING).floor() as i32
+    }
+
+    /// Colour of a value.
+    pub fn colour(&self, value: f32) -> [u8; 3] {
+        ramp(self.place(value))
+    }
+}
+
+/// A picture of values on a scale, 4 bytes a pixel: where there is none (NaN), white, or grey where there is a surface.
+pub fn heat_of(values: &[f32], scale: &Scale, is_surface: impl Fn(usize) -> bool) -> Vec<u8> {
+    /// A surface of which nothing is known.
+    const UNKNOWN: [u8; 3] = [222; 3];
+    let colour = |(i, &value): (usize, &f32)| match value.is_nan() {
+        false => scale.colour(value),
+        true if is_surface(i) => UNKNOWN,
+        true => BACKGROUND,
+    };
+    values.iter().enumerate().map(|pixel| opaque(colour(pixel))).collect::<Vec<_>>().into_flattened()
+}
+
 /// Steps at the light end.
 const MOST_STEPS: f32 = 6.0;
 /// A pixel in doubt.
@@ -29,7 +68,7 @@ pub fn heat(image: &SurfaceImage, what: Heat) -> Vec<u8> {
     let mut pixels: Vec<[u8; 4]> = image.certificate.iter().map(|c| opaque(colour(c, what))).collect();
     let [width, height] = image.size.map(|n| n as usize);
     let fields = match what {
-        Heat::Residual => (MOST / LEAST).log10().round() as usize,
+        Heat::Residual => Scale::RESIDUAL.exponents().count() - 1,
         Heat::Steps => MOST_STEPS as usize,
     };
     let bar = height / 64;
@@ -51,15 +90,15 @@ fn colour(certificate: &Certificate, what: Heat) -> [u8; 3] {
     if certificate.doubtful || certificate.residual.is_nan() {
         return DOUBT;
     }
-    ramp(match what {
-        Heat::Residual => (certificate.residual.max(LEAST) / LEAST).log10() / (MOST / LEAST).log10(),
-        Heat::Steps => f32::from(certificate.steps) / MOST_STEPS,
-    })
+    match what {
+        Heat::Residual => Scale::RESIDUAL.colour(certificate.residual),
+        Heat::Steps => ramp(f32::from(certificate.steps) / MOST_STEPS),
+    }
 }
 
 /// From dark blue over green to yellow, 0 to 1: lightness grows all the way, so that it reads in grey too. (Stops in the manner
 /// of Smith & van der Walt's viridis.)
-fn ramp(t: f32) -> [u8; 3] {
+pub(super) fn ramp(t: f32) -> [u8; 3] {
     const STOPS: [[f32; 3]; 5] =
         [[68.0, 1.0, 84.0], [59.0, 82.0, 139.0], [33.0, 145.0, 140.0], [94.0, 201.0, 98.0], [253.0, 231.0, 37.0]];
     let at = t.clamp(0.0, 1.0) * (STOPS.len() - 1) as f32;

@@ -1,6 +1,4 @@
 //! What the GPU tests share. They fail where there is no adapter: a test that cannot look has seen nothing.
-#![allow(dead_code, reason = "each test program uses its part")]
-
 use catoptric::gpu::Gpu;
 use catoptric::mesh::{self, SubdivMesh};
 use std::path::Path;

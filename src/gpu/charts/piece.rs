@@ -58,7 +58,7 @@ impl Piece {
         let mut error = 0.0;
         for own in BETWEEN.iter().flat_map(|&v| BETWEEN.map(|u| [u, v])) {
             let (a, b) = (surface(self.to_patch(own)).to_array(), self.at(own).value);
-            if lens.perspective && !(a[2].min(b[2]) >= lens.near) {
+            if lens.perspective && a[2].min(b[2]) < lens.near {
                 return f64::INFINITY;
             }
             let [a, b] = [a, b].map(|p| lens.seen(p));

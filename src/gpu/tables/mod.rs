@@ -80,6 +80,11 @@ impl Tables {
         self.bounds
     }
 
+    /// Where the patches came from.
+    pub fn source(&self) -> &dyn PatchSource {
+        &*self.source
+    }
+
     /// How irregular patches are stored; never [`TableLayout::Auto`].
     pub fn layout(&self) -> TableLayout {
         self.layout

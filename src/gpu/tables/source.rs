@@ -20,7 +20,6 @@ pub struct PatchNet {
 
 /// The control points of a patch, as the tables want them.
 #[derive(Debug, Clone)]
-#[expect(clippy::large_enum_variant, reason = "a net is a value on its way into a table")]
 pub enum TableNet {
     /// A uniform bicubic B-spline, u fastest.
     Regular([DVec3; 16]),
@@ -52,7 +51,6 @@ pub enum Storage {
 
 /// The nets that a patch consists of.
 #[derive(Debug)]
-#[expect(clippy::large_enum_variant, reason = "a net is a value on its way to be cut; a box each would cost more")]
 pub enum PatchNets<'a> {
     /// 16 points, u fastest.
     Regular([DVec3; 16]),

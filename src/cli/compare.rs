@@ -1,0 +1,121 @@
+//! `render --compare`: the exact limit, OpenSubdiv's patches, and what differs.
+
+use super::Failure;
+use super::account::Account;
+use super::render::RenderArgs;
+use crate::adaptive::AdaptivePatches;
+use crate::compare::{Comparison, Exact};
+use crate::gpu::{Gpu, Pipeline, Tables, View};
+use crate::mesh::SubdivMesh;
+use crate::osd::{EndCap, Isolation};
+use crate::output::{comparison_panels, sheet, write_png};
+use crate::stam::LimitSurface;
+use crate::statistics::{Spread, short};
+use serde::Serialize;
+use std::path::Path;
+
+/// Both surfaces on the adapter.
+pub(super) struct Pair<'a> {
+    gpu: &'a Gpu,
+    surface: &'a LimitSurface,
+    exact: &'a Tables,
+    osd: Tables,
+    patches: AdaptivePatches,
+    isolation: Isolation,
+    end_cap: EndCap,
+}
+
+/// What `--json` says of a comparison.
+#[derive(Debug, Clone, Serialize)]
+pub(super) struct Compared {
+    /// Levels to which smooth and sharp features are isolated.
+    level_smooth: u32,
+    level_sharp: u32,
+    end_caps: String,
+    patches: usize,
+    patches_end_cap: usize,
+    bytes: u64,
+    bytes_exact: u64,
+    normal_deg: Spread,
+    lines_px: Spread,
+    only_exact_px: usize,
+    only_osd_px: usize,
+}
+
+impl<'a> Pair<'a> {
+    pub fn new(
+        args: &RenderArgs,
+        mesh: &SubdivMesh,
+        surface: &'a LimitSurface,
+        gpu: &'a Gpu,
+        exact: &'a Tables,
+        account: &mut Account,
+    ) -> Result<Pair<'a>, Failure> {
+        let isolation = args.patches.isolation().unwrap_or(Isolation::DEFAULT);
+        let (patches, osd) = args.patches.upload_osd(mesh, isolation, gpu, account)?;
+        Ok(Pair { gpu, surface, exact, osd, patches, isolation, end_cap: args.patches.end_cap() })
+    }
+
+    /// Draws one view of both, and what differs.
+    pub fn take(&self, path: &Path, view: &View, made_by: &str, account: &mut Account) -> Result<(), Failure> {
+        let frames = [self.exact, &self.osd].map(|tables| self.gpu.render(tables, view));
+        let [exact, osd] = frames;
+        let frames = [exact?, osd?];
+        for frame in &frames {
+            account.add(&frame.timings);
+            account.picture(frame.summary);
+        }
+        let exactly = View { pipeline: Pipeline::Exact, enlarge: 1.0, ..view.clone() };
+        let image = self.gpu.inspect(self.exact, &exactly)?;
+        let seen = self.gpu.inspect(&self.osd, view)?;
+        account.add(&image.timings);
+        account.add(&seen.timings);
+        let exact = Exact { surface: self.surface, view, image: &image };
+        let comparison = account.time("compare", || exact.compare(&self.patches, &seen));
+        let (size, pixels) = sheet(comparison.size, &comparison_panels(frames, &seen, &comparison, self.name()));
+        account.time("write", || write_png(path, size, &pixels, made_by))?;
+        account.compared(self.compared(&comparison));
+        Ok(())
+    }
+
+    fn compared(&self, comparison: &Comparison) -> Compared {
+        Compared {
+            level_smooth: self.isolation.smooth,
+            level_sharp: self.isolation.sharp,
+            end_caps: self.end_cap.to_string(),
+            patches: self.patches.patches().len(),
+            patches_end_cap: self.patches.end_caps(),
+            bytes: self.patches.bytes(),
+            bytes_exact: self.exact.size(),
+            normal_deg: comparison.normal,
+            lines_px: comparison.lines,
+            only_exact_px: comparison.only_one[0],
+            only_osd_px: comparison.only_one[1],
+        }
+    }
+
+    /// What the picture of OpenSubdiv's patches is called.
+    fn name(&self) -> String {
+        let Isolation { smooth, sharp } = self.isolation;
+        match smooth == sharp {
+            true => format!("OpenSubdiv, level {sharp}, {} end caps", self.end_cap),
+            false => format!("OpenSubdiv, level {smooth}, sharp features {sharp}, {} end caps", self.end_cap),
+        }
+    }
+}
+
+impl Compared {
+    /// A line on standard error.
+    pub fn say(&self) {
+        let Compared { level_smooth, level_sharp, end_caps, patches, patches_end_cap, normal_deg, lines_px, .. } = self;
+        eprintln!(
+            "compare: OpenSubdiv level {level_smooth}/{level_sharp}, {patches} patches ({patches_end_cap} {end_caps} end caps): \
+             normals p99 {}, max {} degrees; reflection lines p99 {}, max {} pixels; seen in one picture only: {} pixels",
+            short(normal_deg.p99),
+            short(normal_deg.max),
+            short(lines_px.p99),
+            short(lines_px.max),
+            self.only_exact_px + self.only_osd_px
+        );
+    }
+}

@@ -1,0 +1,139 @@
+//! Pictures side by side, with captions and legends.
+
+use super::heat::{Scale, ramp};
+use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_width};
+
+/// One of the pictures of a [`sheet`].
+#[derive(Debug, Clone)]
+pub struct Panel {
+    /// A line above it.
+    pub caption: String,
+    /// sRGB RGBA, 4 bytes a pixel, rows from top to bottom.
+    pub rgba8: Vec<u8>,
+    /// The scale of its colours, below it, and what they measure.
+    pub legend: Option<(Scale, String)>,
+}
+
+const PAPER: [u8; 4] = [255; 4];
+const INK: [u8; 4] = [32, 34, 38, 255];
+/// Pixels round each picture.
+const MARGIN: usize = 12;
+const LINE: usize = 16;
+/// Height of a legend: bar, ticks' labels, what they measure.
+const LEGEND: usize = BAR + 6 + 2 * LINE;
+const BAR: usize = 14;
+
+/// A picture of panels in rows of two, all of the same size in pixels, and its own size. What does not fit is cut off.
+pub fn sheet(size: [u32; 2], panels: &[Panel]) -> ([u32; 2], Vec<u8>) {
+    let [width, height] = size.map(|n| n as usize);
+    let columns = panels.len().min(2);
+    let rows: Vec<&[Panel]> = panels.chunks(2).collect();
+    let row_height = |row: &&[Panel]| {
+        let legend = if row.iter().any(|panel| panel.legend.is_some()) { MARGIN / 2 + LEGEND } else { 0 };
+        LINE + MARGIN / 2 + height + legend + MARGIN
+    };
+    let total = [columns * (width + MARGIN) + MARGIN, MARGIN + rows.iter().map(row_height).sum::<usize>()];
+    let mut page = Page { width: total[0], pixels: vec![PAPER; total[0] * total[1]] };
+    let mut y = MARGIN;
+    for row in rows {
+        for (column, panel) in row.iter().enumerate() {
+            let x = MARGIN + column * (width + MARGIN);
+            page.text([x, y], width, &panel.caption);
+            page.picture([x, y + LINE + MARGIN / 2], width, &panel.rgba8);
+            if let Some((scale, what)) = &panel.legend {
+                page.legend([x, y + LINE + MARGIN + height], width, scale, what);
+            }
+        }
+        y += row_height(&row);
+    }
+    (total.map(|n| n as u32), page.pixels.into_flattened())
+}
+
+struct Page {
+    width: usize,
+    pixels: Vec<[u8; 4]>,
+}
+
+impl Page {
+    fn picture(&mut self, [x, y]: [usize; 2], width: usize, rgba8: &[u8]) {
+        let (pixels, _) = rgba8.as_chunks();
+        for (row, source) in pixels.chunks_exact(width).enumerate() {
+            let start = (y + row) * self.width + x;
+            self.pixels[start..start + width].copy_from_slice(source);
+        }
+    }
+
+    /// Writes one line, at most `width` pixels of it.
+    fn text(&mut self, [x, y]: [usize; 2], width: usize, text: &str) {
+        let advance = get_raster_width(FontWeight::Regular, RasterHeight::Size16);
+        for (i, c) in text.chars().enumerate().take(width / advance) {
+            let Some(glyph) = get_raster(c, FontWeight::Regular, RasterHeight::Size16) else { continue };
+            for (row, line) in glyph.rows().enumerate() {
+                for (column, &cover) in line.iter().enumerate() {
+                    let pixel = &mut self.pixels[(y + row) * self.width + x + i * advance + column];
+                    for (channel, ink) in pixel.iter_mut().zip(INK) {
+                        let mixed = u16::from(*channel) * (255 - u16::from(cover)) + u16::from(ink) * u16::from(cover);
+                        *channel = (mixed / 255) as u8;
+                    }
+                }
+            }
+        }
+    }
+
+    /// A bar with the colours of a scale, its powers of ten, and what it measures.
+    fn legend(&mut self, [x, y]: [usize; 2], width: usize, scale: &Scale, what: &str) {
+        for column in 0..width {
+            let [r, g, b] = ramp(column as f32 / (width - 1).max(1) as f32);
+            for row in y..y + BAR {
+                self.pixels[row * self.width + x + column] = [r, g, b, 255];
+            }
+        }
+        let advance = get_raster_width(FontWeight::Regular, RasterHeight::Size16);
+        for exponent in scale.exponents() {
+            let at = (scale.place(10f32.powi(exponent)) * (width - 1) as f32).round() as usize;
+            for row in y + BAR - 4..y + BAR + 3 {
+                self.pixels[row * self.width + x + at] = INK;
+            }
+            let label = power_of_ten(exponent);
+            let long = label.len() * advance;
+            // In the middle below its tick, but inside the panel.
+            let left = at.saturating_sub(long / 2).min(width.saturating_sub(long));
+            self.text([x + left, y + BAR + 4], width - left.min(width), &label);
+        }
+        self.text([x, y + BAR + 6 + LINE], width, what);
+    }
+}
+
+/// As people write it: 0.01, but 1e-6.
+fn power_of_ten(exponent: i32) -> String {
+    match exponent {
+        -3..=3 => format!("{}", 10f64.powi(exponent)),
+        _ => format!("1e{exponent}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn panels_stand_where_they_belong() {
+        let red = [200u8, 10, 20, 255].repeat(64 * 40);
+        let panel = |legend| Panel { caption: "a caption that is cut off".into(), rgba8: red.clone(), legend };
+        let scale = Scale { least: 1e-4, most: 1.0 };
+        let panels = [panel(None), panel(None), panel(Some((scale, "degrees".into())))];
+        let ([width, height], pixels) = sheet([64, 40], &panels);
+        assert_eq!([width, height], [2 * 76 + 12, 12 + 2 * (16 + 6 + 40 + 12) + 6 + LEGEND as u32]);
+        assert_eq!(pixels.len(), 4 * (width * height) as usize);
+        let count = |colour: [u8; 4]| pixels.as_chunks::<4>().0.iter().filter(|&&pixel| pixel == colour).count();
+        assert_eq!(count([200, 10, 20, 255]), 3 * 64 * 40);
+        // A panel as narrow as one pixel, which no caption fits, is no reason to fail.
+        let dot = Panel { caption: "x".into(), rgba8: vec![0, 0, 0, 255], legend: Some((scale, String::new())) };
+        assert_eq!(sheet([1, 1], &[dot]).0[0], 25);
+    }
+
+    #[test]
+    fn powers_are_written_as_people_write_them() {
+        assert_eq!([-6, -2, 0, 2].map(power_of_ten), ["1e-6", "0.01", "1", "100"]);
+    }
+}
