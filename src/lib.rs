@@ -7,6 +7,7 @@
 //! * [`patch`]: the refined faces whose limit has a closed form become patches;
 //! * [`stam`]: class tables give the exact limit anywhere, in f64 ([`stam::LimitSurface`]);
 //! * [`adaptive`]: OpenSubdiv's own patches, end caps included, as other programs show them;
+//! * [`statistics`]: what errors are summed up in;
 //! * [`field`]: cameras, lights and what a surface mirrors;
 //! * [`gpu`]: the same limit for every pixel, in a fragment pipeline;
 //! * [`compare`]: how far a picture of other patches is from the exact one;
@@ -34,4 +35,5 @@ pub mod osd;
 pub mod output;
 pub mod patch;
 pub mod stam;
+pub mod statistics;
 pub mod verify;

@@ -287,14 +287,26 @@ fn info_counts_features_and_patches() {
     assert_eq!(info["interior_valences"]["5"], 1);
     let text = folder.run(["info".as_ref(), mesh("pole_5").as_os_str()]);
     assert!(String::from_utf8_lossy(&text.stdout).contains("smooth: 5"));
-    // OpenSubdiv's share costs a refinement, so it is there for the asking.
-    assert!(info.get("opensubdiv_patches").is_none());
-    let output = folder.run(["info".as_ref(), mesh("pole_5").as_os_str(), "--json".as_ref(), "--peers".as_ref()]);
-    let info: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
-    assert!(info["opensubdiv_patches"].as_u64() > info["patches"]["regular"].as_u64());
-    assert!(info["opensubdiv_bytes"].as_u64() > Some(1000));
-    let text = folder.run(["info".as_ref(), mesh("pole_5").as_os_str(), "--peers".as_ref()]);
-    assert!(String::from_utf8_lossy(&text.stdout).contains("OpenSubdiv's patches"));
+    let levels = info["opensubdiv"].as_array().expect("a list of levels");
+    assert_eq!(levels.len(), 10);
+    for pair in levels.windows(2) {
+        assert!(pair[1]["patches"].as_u64() > pair[0]["patches"].as_u64());
+        assert!(pair[1]["bytes"].as_u64() > pair[0]["bytes"].as_u64());
+        let position = |level: &serde_json::Value| level["gregory"]["position"]["max"].as_f64().expect("a number");
+        assert!(position(&pair[1]) < position(&pair[0]) && position(&pair[1]) > 0.0);
+    }
+    // A pole of valence 5 inside: five end caps at every level, on an area that shrinks by four.
+    assert!(levels.iter().all(|level| level["end_caps"] == 5));
+    let area = |i: usize| levels[i]["gregory"]["area"].as_f64().expect("a number");
+    assert!((area(3) * 4.0 - area(2)).abs() < 1e-12);
+    let by_level = levels[9]["patches_by_level"].as_object().expect("a map").values();
+    assert_eq!(
+        by_level.map(|count| count.as_u64().expect("a count")).sum::<u64>(),
+        levels[9]["patches"].as_u64().unwrap()
+    );
+    assert!(String::from_utf8_lossy(&text.stdout).contains("OpenSubdiv's feature-adaptive patches"));
+    let text = folder.run(["info".as_ref(), mesh("pole_5").as_os_str(), "--levels".as_ref(), "0".as_ref()]);
+    assert!(!String::from_utf8_lossy(&text.stdout).contains("OpenSubdiv"));
 }
 
 #[test]

@@ -1,11 +1,11 @@
 //! How far a picture is off the limit surface on each pixel's ray, in f64.
 
 use super::paper::{EXACT, Failure, Stage, drawn_by};
-use catoptric::compare::Spread;
 use catoptric::field::Camera;
 use catoptric::gpu::{MAX_PROXY_LEVEL, NO_PATCH, SurfaceImage, View};
 use catoptric::patch::Adjacency;
 use catoptric::stam::Jet;
+use catoptric::statistics::Spread;
 use glam::{DMat2, DVec2, DVec3};
 use rayon::prelude::*;
 

@@ -13,8 +13,10 @@
 //! # Ok::<(), osd::Error>(())
 //! ```
 
+mod accuracy;
 mod gregory;
 
+pub use accuracy::Accuracy;
 pub use gregory::{Gregory, weights};
 
 use crate::mesh::SubdivMesh;

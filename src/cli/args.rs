@@ -1,5 +1,6 @@
 //! Flags, typed.
 
+use crate::osd::MAX_ISOLATION;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -97,9 +98,10 @@ pub(super) struct InfoArgs {
     /// Print JSON
     #[arg(long)]
     pub json: bool,
-    /// Also count OpenSubdiv's patches at isolation 10 and their bytes, which takes its time
-    #[arg(long)]
-    pub peers: bool,
+    /// Deepest level of OpenSubdiv's feature-adaptive patches to list, 0 to 10: number, memory, and how far their end caps
+    /// are from the limit [default: 10; 3 for meshes of more than 20,000 faces]
+    #[arg(long, value_name = "LEVEL", value_parser = clap::value_parser!(u32).range(0..=i64::from(MAX_ISOLATION)))]
+    pub levels: Option<u32>,
 }
 
 /// Largest width and height of a picture, the texture limit of the software adapter.

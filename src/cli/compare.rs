@@ -4,12 +4,13 @@ use super::Failure;
 use super::account::Account;
 use super::render::RenderArgs;
 use crate::adaptive::AdaptivePatches;
-use crate::compare::{Comparison, Reference, Spread};
-use crate::gpu::{Frame, Gpu, Pipeline, Tables, View};
+use crate::compare::{Comparison, Exact};
+use crate::gpu::{Gpu, Pipeline, Tables, View};
 use crate::mesh::SubdivMesh;
 use crate::osd::{EndCap, Isolation};
-use crate::output::{Panel, Scale, heat_of, sheet, write_png};
+use crate::output::{comparison_panels, sheet, write_png};
 use crate::stam::LimitSurface;
+use crate::statistics::{Spread, short};
 use serde::Serialize;
 use std::path::Path;
 
@@ -65,13 +66,13 @@ impl<'a> Pair<'a> {
             account.picture(frame.summary);
         }
         let exactly = View { pipeline: Pipeline::Exact, enlarge: 1.0, ..view.clone() };
-        let reference = self.gpu.inspect(self.exact, &exactly)?;
-        account.add(&reference.timings);
-        let reference = account.time("compare", || Reference::new(self.surface, view, &reference));
+        let image = self.gpu.inspect(self.exact, &exactly)?;
         let seen = self.gpu.inspect(&self.osd, view)?;
+        account.add(&image.timings);
         account.add(&seen.timings);
-        let comparison = account.time("compare", || reference.compare(&seen));
-        let (size, pixels) = self.sheet(frames, &comparison);
+        let exact = Exact { surface: self.surface, view, image: &image };
+        let comparison = account.time("compare", || exact.compare(&self.patches, &seen));
+        let (size, pixels) = sheet(comparison.size, &comparison_panels(frames, &seen, &comparison, self.name()));
         account.time("write", || write_png(path, size, &pixels, made_by))?;
         account.compared(self.compared(&comparison));
         Ok(())
@@ -93,41 +94,13 @@ impl<'a> Pair<'a> {
         }
     }
 
-    fn sheet(&self, [exact, osd]: [Frame; 2], comparison: &Comparison) -> ([u32; 2], Vec<u8>) {
-        /// A hundredth of a pixel is what our own pipeline is held to; beyond ten pixels a line is another one.
-        const LINES: Scale = Scale { least: 1e-3, most: 10.0 };
-        /// 1.4e-3 degrees move a line by some 1/100 pixel.
-        const NORMALS: Scale = Scale { least: 1e-4, most: 10.0 };
-        let panel = |caption: String, rgba8, legend| Panel { caption, rgba8, legend };
-        let spread = |what: &str, spread: &Spread| {
-            format!("{what}: mean {:.2e}, p99 {:.2e}, max {:.2e}", spread.mean, spread.p99, spread.max)
-        };
-        let heat = |values: &[f32], scale: Scale, caption: String, what: &str| {
-            panel(caption, heat_of(values, &scale), Some((scale, what.to_owned())))
-        };
+    /// What the picture of OpenSubdiv's patches is called.
+    fn name(&self) -> String {
         let Isolation { smooth, sharp } = self.isolation;
-        let levels = match smooth == sharp {
-            true => format!("level {sharp}"),
-            false => format!("level {smooth}, sharp features {sharp}"),
-        };
-        let osd_caption = format!("OpenSubdiv, {levels}, {} end caps", self.end_cap);
-        let panels = [
-            panel("Exact limit (Stam tables)".to_owned(), exact.rgba8, None),
-            panel(osd_caption, osd.rgba8, None),
-            heat(
-                &comparison.lines_px,
-                LINES,
-                spread("Lines", &comparison.lines),
-                "Displacement of reflection lines, pixels",
-            ),
-            heat(
-                &comparison.normal_deg,
-                NORMALS,
-                spread("Normals", &comparison.normal),
-                "Angle between normals, degrees",
-            ),
-        ];
-        sheet(comparison.size, &panels)
+        match smooth == sharp {
+            true => format!("OpenSubdiv, level {sharp}, {} end caps", self.end_cap),
+            false => format!("OpenSubdiv, level {smooth}, sharp features {sharp}, {} end caps", self.end_cap),
+        }
     }
 }
 
@@ -137,12 +110,11 @@ impl Compared {
         let Compared { level_smooth, level_sharp, end_caps, patches, patches_end_cap, normal_deg, lines_px, .. } = self;
         eprintln!(
             "compare: OpenSubdiv level {level_smooth}/{level_sharp}, {patches} patches ({patches_end_cap} {end_caps} end caps): \
-             normals p99 {:.2e}, max {:.2e} degrees; reflection lines p99 {:.2e}, max {:.2e} pixels; seen in one picture only: \
-             {} pixels",
-            normal_deg.p99,
-            normal_deg.max,
-            lines_px.p99,
-            lines_px.max,
+             normals p99 {}, max {} degrees; reflection lines p99 {}, max {} pixels; seen in one picture only: {} pixels",
+            short(normal_deg.p99),
+            short(normal_deg.max),
+            short(lines_px.p99),
+            short(lines_px.max),
             self.only_exact_px + self.only_osd_px
         );
     }

@@ -1,40 +1,41 @@
 //! How far a picture of other patches is from the exact limit, pixel by pixel: normals in degrees, reflection lines in pixels.
 //!
 //! # Theory
-//! Both pictures are taken on the same rays, so at every pixel the two normals enclose an angle, and the two values f of the
-//! field differ by some d. Reflection lines are contours of f (Ulmet 2003, Theorem RC), so where the exact f has the gradient g on
-//! the screen, the line of the same value lies |d| / |g| pixels away, to first order. Near points where g vanishes that
-//! says nothing; to second order, with h the second derivative of f along g, it is the root of |g| s + |h| s^2 / 2 = |d|.
+//! A pixel of the other picture sees some patch at some (u,v), and these are a place of the limit surface too: the two
+//! normals there enclose an angle, whichever side of a crease or silhouette the pixel happens to be on. Reflection lines are contours of
+//! the field f (Ulmet 2003, Theorem RC). The exact surface has the value f at that place, the gradient g by pixels, and appears e
+//! pixels beside the pixel; so where the other picture has the value f', the exact one has f - g.e, and the line of the value f' is
+//! |d| / |g| pixels away, d = f' - f + g.e, to first order. Near points where g vanishes that says nothing; to second order, with h
+//! the second derivative of f along g, it is the root of |g| s + |h| s^2 / 2 = |d|.
 //!
 //! # Practice
-//! [`Reference::new`] evaluates gradient and second derivative once, in f64; [`Reference::compare`] holds any picture of the same view
-//! against them.
+//! [`Exact`] holds the surface and what the view shows of it; [`Exact::compare`] holds any picture of the same view
+//! against it, in f64.
 
-use crate::gpu::{NO_PATCH, SurfaceImage, View};
+use crate::gpu::{NO_PATCH, PatchSource, SurfaceImage, View};
 use crate::stam::LimitSurface;
+use crate::statistics::{Spread, angle_deg};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
-/// The exact surface at every pixel of a view.
-#[derive(Debug, Clone)]
-pub struct Reference {
-    size: [u32; 2],
-    pixels: Vec<Option<Pixel>>,
-}
-
+/// The exact surface in a view.
 #[derive(Debug, Clone, Copy)]
-struct Pixel {
-    normal: DVec3,
-    line: Option<Line>,
+pub struct Exact<'a> {
+    /// The surface.
+    pub surface: &'a LimitSurface,
+    /// The view.
+    pub view: &'a View,
+    /// What the view shows of the surface.
+    pub image: &'a SurfaceImage,
 }
 
-/// The first coordinate of the field, whose contours are the lines, at a pixel.
+/// The first coordinate of the field, whose contours are the lines, at a place of the exact surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Line {
     value: f64,
-    /// Length of its gradient, by pixels.
-    gradient: f64,
-    /// Its second derivative along the gradient.
+    /// By pixels.
+    gradient: DVec2,
+    /// Second derivative along the gradient.
     bend: f64,
 }
 
@@ -45,7 +46,7 @@ pub struct Comparison {
     pub size: [u32; 2],
     /// Angle between the normals in degrees; NaN where one of the two has no surface or no normal.
     pub normal_deg: Vec<f32>,
-    /// Displacement of the reflection lines in pixels; NaN where one of the two has no line.
+    /// Displacement of the reflection lines in pixels, at most the picture's diagonal; NaN where one of the two has no line.
     pub lines_px: Vec<f32>,
     /// The angles, summed up.
     pub normal: Spread,
@@ -55,29 +56,11 @@ pub struct Comparison {
     pub only_one: [usize; 2],
 }
 
-/// Mean, 99th percentile (nearest rank) and maximum.
-#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize)]
-pub struct Spread {
-    /// How many values there are.
-    pub count: usize,
-    /// Mean.
-    pub mean: f64,
-    /// 99th percentile.
-    pub p99: f64,
-    /// Largest value.
-    pub max: f64,
-}
-
-impl Spread {
-    /// Of all values but NaN.
-    pub fn of(values: impl IntoIterator<Item = f64>) -> Spread {
-        let mut values: Vec<f64> = values.into_iter().filter(|x| !x.is_nan()).collect();
-        values.sort_by(f64::total_cmp);
-        let Some(&max) = values.last() else { return Spread::default() };
-        let count = values.len();
-        let mean = values.iter().sum::<f64>() / count as f64;
-        Spread { count, mean, p99: values[(count * 99).div_ceil(100) - 1], max }
-    }
+/// What one pixel shows: angle between the normals, and displacement of the lines; NaN where there is none.
+#[derive(Debug, Clone, Copy)]
+struct Difference {
+    normal_deg: f64,
+    lines_px: f64,
 }
 
 impl Line {
@@ -117,70 +100,60 @@ impl Line {
         let (near, far) = (value(uv + part * step)?, value(uv + 2.0 * part * step)?);
         let bend = (far - 2.0 * near + start) / (REACH * part).powi(2);
         let bend = if bend.is_finite() { bend } else { 0.0 };
-        Some(Line { value: start, gradient: gradient.length(), bend })
+        Some(Line { value: start, gradient, bend })
     }
 
-    /// Pixels from here to where the field has another value.
-    fn displacement(&self, value: f64) -> f64 {
-        let difference = (value - self.value).abs();
-        let root = (self.gradient.powi(2) + 2.0 * self.bend.abs() * difference).sqrt();
-        if difference == 0.0 { 0.0 } else { 2.0 * difference / (self.gradient + root) }
+    /// Pixels from a point `aside` of here, in pixels, to where the field has this value.
+    fn displacement(&self, aside: DVec2, value: f64) -> f64 {
+        let difference = (value - self.value - self.gradient.dot(aside)).abs();
+        let root = (self.gradient.length_squared() + 2.0 * self.bend.abs() * difference).sqrt();
+        if difference == 0.0 { 0.0 } else { 2.0 * difference / (self.gradient.length() + root) }
     }
 }
 
-impl Reference {
-    /// From the picture that [`Gpu::inspect`](crate::gpu::Gpu::inspect) takes of the limit surface in the exact pipeline: it says
-    /// where each ray meets the surface; what is there is evaluated in f64.
-    pub fn new(surface: &LimitSurface, view: &View, image: &SurfaceImage) -> Reference {
-        let pixel = |i: usize| {
-            let patch = image.patch[i];
-            (patch != NO_PATCH).then(|| {
-                let (patch, uv) = (patch as usize, image.uv[i].map(f64::from));
-                let normal = surface.evaluate(patch, uv).normal;
-                Pixel { normal, line: Line::new(surface, view, patch, DVec2::from_array(uv)) }
-            })
-        };
-        Reference { size: image.size, pixels: (0..image.patch.len()).into_par_iter().map(pixel).collect() }
-    }
-
-    /// Holds another picture of the same view against the exact surface.
+impl Exact<'_> {
+    /// Holds another picture of the same view against the exact surface. `source`: where its patches came from.
     ///
     /// # Panics
-    /// The picture has another size.
-    pub fn compare(&self, image: &SurfaceImage) -> Comparison {
-        assert_eq!(self.size, image.size, "a picture of the same view");
-        let one = |(i, exact): (usize, &Option<Pixel>)| {
-            let Some(exact) = exact.as_ref().filter(|_| image.patch[i] != NO_PATCH) else {
-                return (f64::NAN, f64::NAN);
-            };
-            let normal = DVec3::from_array(image.normal[i].map(f64::from));
-            let line = exact.line.zip(image.field[i]).map(|(line, value)| line.displacement(value.x));
-            (angle_deg(normal, exact.normal), line.unwrap_or(f64::NAN))
-        };
-        let (normals, lines): (Vec<f64>, Vec<f64>) = self.pixels.par_iter().enumerate().map(one).unzip();
-        let mut only_one = [0; 2];
-        for (exact, &patch) in self.pixels.iter().zip(&image.patch) {
-            match (exact.is_some(), patch != NO_PATCH) {
-                (true, false) => only_one[0] += 1,
-                (false, true) => only_one[1] += 1,
-                _ => {}
-            }
-        }
+    /// The picture has another size, or its patches are of another mesh.
+    pub fn compare(&self, source: &dyn PatchSource, image: &SurfaceImage) -> Comparison {
+        assert_eq!(self.image.size, image.size, "a picture of the same view");
+        let covers = |image: &SurfaceImage, i: usize| image.patch[i] != NO_PATCH;
+        let count = image.patch.len();
+        let differences: Vec<Difference> = (0..count)
+            .into_par_iter()
+            .map(|i| match covers(image, i) && covers(self.image, i) {
+                true => self.difference(source, image, i),
+                false => Difference { normal_deg: f64::NAN, lines_px: f64::NAN },
+            })
+            .collect();
+        let only = |a: &SurfaceImage, b: &SurfaceImage| (0..count).filter(|&i| covers(a, i) && !covers(b, i)).count();
         Comparison {
-            size: self.size,
-            normal: Spread::of(normals.iter().copied()),
-            lines: Spread::of(lines.iter().copied()),
-            normal_deg: normals.into_iter().map(|x| x as f32).collect(),
-            lines_px: lines.into_iter().map(|x| x as f32).collect(),
-            only_one,
+            size: image.size,
+            normal: Spread::of(differences.iter().map(|d| d.normal_deg)),
+            lines: Spread::of(differences.iter().map(|d| d.lines_px)),
+            normal_deg: differences.iter().map(|d| d.normal_deg as f32).collect(),
+            lines_px: differences.iter().map(|d| d.lines_px as f32).collect(),
+            only_one: [only(self.image, image), only(image, self.image)],
         }
     }
-}
 
-/// Angle between two normals; NaN where one is none.
-fn angle_deg(a: DVec3, b: DVec3) -> f64 {
-    match a.length_squared() > 0.0 && b.length_squared() > 0.0 {
-        true => a.cross(b).length().atan2(a.dot(b)).to_degrees(),
-        false => f64::NAN,
+    fn difference(&self, source: &dyn PatchSource, image: &SurfaceImage, i: usize) -> Difference {
+        let (ptex, uv) = source.to_ptex(image.patch[i] as usize, image.uv[i].map(f64::from));
+        let Some((patch, uv)) = self.surface.locate(ptex, uv) else {
+            return Difference { normal_deg: f64::NAN, lines_px: f64::NAN };
+        };
+        let exact = self.surface.evaluate(patch, uv);
+        let normal = DVec3::from_array(image.normal[i].map(f64::from));
+        let lines = || {
+            let line = Line::new(self.surface, self.view, patch, DVec2::from_array(uv))?;
+            let width = image.size[0] as usize;
+            let centre = DVec2::new((i % width) as f64 + 0.5, (i / width) as f64 + 0.5);
+            let aside = centre - DVec2::from_array(self.view.camera.project(exact.position)?);
+            // Farther away than the picture is long, there is no such line.
+            let farthest = f64::from(image.size[0]).hypot(image.size[1].into());
+            Some(line.displacement(aside, image.field[i]?.x).min(farthest))
+        };
+        Difference { normal_deg: angle_deg(normal, exact.normal), lines_px: lines().unwrap_or(f64::NAN) }
     }
 }

@@ -43,10 +43,16 @@ impl Scale {
     }
 }
 
-/// A picture of values on a scale, 4 bytes a pixel: white where there is none (NaN).
-pub fn heat_of(values: &[f32], scale: &Scale) -> Vec<u8> {
-    let colour = |&value: &f32| opaque(if value.is_nan() { BACKGROUND } else { scale.colour(value) });
-    values.iter().map(colour).collect::<Vec<_>>().into_flattened()
+/// A picture of values on a scale, 4 bytes a pixel: where there is none (NaN), white, or grey where there is a surface.
+pub fn heat_of(values: &[f32], scale: &Scale, is_surface: impl Fn(usize) -> bool) -> Vec<u8> {
+    /// A surface of which nothing is known.
+    const UNKNOWN: [u8; 3] = [222; 3];
+    let colour = |(i, &value): (usize, &f32)| match value.is_nan() {
+        false => scale.colour(value),
+        true if is_surface(i) => UNKNOWN,
+        true => BACKGROUND,
+    };
+    values.iter().enumerate().map(|pixel| opaque(colour(pixel))).collect::<Vec<_>>().into_flattened()
 }
 
 /// Steps at the light end.

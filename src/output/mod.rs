@@ -1,11 +1,13 @@
 //! What goes out: files that are written whole or not at all.
 
+mod comparison;
 mod exr;
 mod heat;
 mod png;
 mod sheet;
 mod whole;
 
+pub use comparison::{LINES_PX, NORMALS_DEG, comparison_panels};
 pub use exr::{Layers, NO_FACE, read_exr_made_by, world_to_camera, world_to_ndc, write_exr};
 pub use heat::{Heat, Scale, heat, heat_of};
 pub use png::{read_png_made_by, write_png};

@@ -2,7 +2,7 @@
 
 use crate::gpu_support::{gpu, mesh};
 use catoptric::adaptive::AdaptivePatches;
-use catoptric::compare::{Comparison, Reference};
+use catoptric::compare::{Comparison, Exact};
 use catoptric::field::Scout;
 use catoptric::gpu::{SurfaceImage, View};
 use catoptric::mesh::SubdivMesh;
@@ -30,15 +30,19 @@ impl Scene {
         Scene { mesh, surface, view, image }
     }
 
-    fn reference(&self) -> Reference {
-        Reference::new(&self.surface, &self.view, &self.image)
+    fn compare(&self, image: &SurfaceImage) -> Comparison {
+        self.exact().compare(&self.surface, image)
+    }
+
+    fn exact(&self) -> Exact<'_> {
+        Exact { surface: &self.surface, view: &self.view, image: &self.image }
     }
 
     fn with_osd(&self, level: u32) -> Comparison {
         let patches =
             AdaptivePatches::new(&self.mesh, Isolation::uniform(level), EndCap::Gregory).expect("the mesh is valid");
         let tables = gpu().upload_patches(&patches).expect("they fit");
-        self.reference().compare(&gpu().inspect(&tables, &self.view).expect("the adapter works"))
+        self.exact().compare(&patches, &gpu().inspect(&tables, &self.view).expect("the adapter works"))
     }
 }
 
@@ -47,7 +51,7 @@ impl Scene {
 fn the_exact_picture_is_exact() {
     for name in ["cube.obj", "pole_5.obj"] {
         let scene = Scene::new(name, [160, 120]);
-        let same = scene.reference().compare(&scene.image);
+        let same = scene.compare(&scene.image);
         println!("{name}: normals {:?}, lines {:?}", same.normal, same.lines);
         assert!(same.normal.count > 3000 && same.only_one == [0, 0]);
         assert!(same.normal.p99 < 6e-5 && same.lines.p99 < 1e-3, "{name}: {same:?}");
@@ -60,14 +64,13 @@ fn the_exact_picture_is_exact() {
 fn known_differences_are_measured() {
     let [width, height] = [640, 480];
     let scene = Scene::new("pole_5.obj", [width as u32, height as u32]);
-    let reference = scene.reference();
     let mut turned = scene.image.clone();
     for normal in &mut turned.normal {
         let n = DVec3::from_array(normal.map(f64::from));
         let t = n + n.any_orthonormal_vector() * 0.25f64.to_radians().tan();
         *normal = t.normalize_or_zero().as_vec3().to_array();
     }
-    let found = reference.compare(&turned).normal;
+    let found = scene.compare(&turned).normal;
     assert!((found.mean - 0.25).abs() < 1e-4 && (found.max - 0.25).abs() < 1e-3, "{found:?}");
 
     // Each pixel is given the value of its right neighbour: where the field changes along the row, lines move by a pixel
@@ -76,7 +79,7 @@ fn known_differences_are_measured() {
     for i in 0..moved.field.len() - 1 {
         moved.field[i] = scene.image.field[i + 1];
     }
-    let displaced = reference.compare(&moved);
+    let displaced = scene.compare(&moved);
     let mut checked = 0;
     for i in 0..moved.field.len() {
         let (x, y) = (i % width, i / width);

@@ -31,7 +31,7 @@ impl Job<'_> {
             let mesh = input.mesh().map_err(Refusal::Mesh)?;
             verify_planted(&mesh, self.gpu, self.size, self.plant).map_err(|error| match error {
                 VerifyError::Gpu(error) => Refusal::Gpu(error.into()),
-                error => Refusal::Verify(error),
+                error => Refusal::Verify(error.to_string()),
             })
         };
         match (report(input), input.is_named()) {
@@ -42,7 +42,7 @@ impl Job<'_> {
             (Err(Refusal::Verify(error)), false) => {
                 Ok(Outcome::Refused(format!("{}: {error}", input.source().unwrap_or_default())))
             }
-            (Err(Refusal::Verify(error)), true) => Err(Failure::of_input(input, error.to_string())),
+            (Err(Refusal::Verify(error)), true) => Err(Failure::of_input(input, error)),
         }
     }
 }
@@ -51,7 +51,8 @@ impl Job<'_> {
 enum Refusal {
     /// It is none; the line names the file.
     Mesh(String),
-    Verify(VerifyError),
+    /// Nothing of it can be judged.
+    Verify(String),
     /// The adapter is at fault, not the mesh.
     Gpu(Failure),
 }

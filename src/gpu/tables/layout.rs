@@ -3,7 +3,6 @@
 use super::basis::Basis;
 use super::{PatchSource, Storage, TABLE_LEVELS};
 use crate::gpu::shader::{LEVEL_TEXELS, SCALE_LEVELS};
-use crate::stam::LimitSurface;
 use rayon::prelude::*;
 use std::collections::HashSet;
 use std::fmt;
@@ -75,10 +74,10 @@ impl FromStr for TableLayout {
     }
 }
 
-/// Bytes that the tables of a surface take on an adapter, without building them. `Auto`: those of its choice, if the
+/// Bytes that the tables of patches take on an adapter, without building them. `Auto`: those of its choice, if the
 /// adapter has room for it.
-pub fn bytes(surface: &LimitSurface, layout: TableLayout) -> u64 {
-    Plan::new(surface, layout, u64::MAX).bytes
+pub fn bytes(source: &impl PatchSource, layout: TableLayout) -> u64 {
+    Plan::new(source, layout, u64::MAX).bytes
 }
 
 /// A layout applied to a surface: where everything goes.

@@ -188,18 +188,19 @@ impl Search<'_> {
 
     fn derivatives(&self, failing: &[&Judged]) -> Option<Finding> {
         let given = |j: &Judged| Some((j.0.derivatives?, j.1?.0));
-        let pairs: Vec<([DVec3; 2], Jet)> = failing.iter().filter_map(|j| given(j)).collect();
+        type Pair = ([DVec3; 2], Jet);
+        let pairs: Vec<Pair> = failing.iter().filter_map(|j| given(j)).collect();
         if pairs.is_empty() {
             return None;
         }
         let near = |a: DVec3, b: DVec3| a.distance(b) <= LEFT * a.length().max(b.length());
         let both = |[a, b]: [DVec3; 2], [c, d]: [DVec3; 2]| near(a, c) && near(b, d);
-        let count = |fits: &dyn Fn(&([DVec3; 2], Jet)) -> bool| pairs.iter().filter(|pair| fits(pair)).count();
+        let count = |fits: &dyn Fn(&Pair) -> bool| pairs.iter().filter(|pair| fits(pair)).count();
         let mut mistakes = vec![(
             "the derivatives by u and by v are swapped".to_owned(),
             count(&|([du, dv], jet)| both([*dv, *du], [jet.du, jet.dv])),
         )];
-        let scaled = |by: f64| move |([du, dv], jet): &([DVec3; 2], Jet)| both([*du, *dv], [by * jet.du, by * jet.dv]);
+        let scaled = |by: f64| move |([du, dv], jet): &Pair| both([*du, *dv], [by * jet.du, by * jet.dv]);
         for (by, name) in [(0.5, "half as long as"), (2.0, "twice as long as"), (-1.0, "opposite to")] {
             mistakes.push((
                 format!("the derivatives are {name} those by the u and v of the ptex face"),
@@ -207,7 +208,7 @@ impl Search<'_> {
             ));
         }
         // By the parameters of patches of any size.
-        let power_of_two = |pair: &([DVec3; 2], Jet)| {
+        let power_of_two = |pair: &Pair| {
             let by = 2f64.powf((pair.0[0].length() / pair.1.du.length()).log2().round());
             by.is_finite() && scaled(by)(pair)
         };

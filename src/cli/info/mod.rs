@@ -1,15 +1,22 @@
 //! `info`: what a mesh is made of, and what it will take.
 
+mod adaptive;
+
+use adaptive::AdaptiveLevel;
+
 use super::args::InfoArgs;
 use super::{Failure, load, write_out};
 use crate::gpu;
 use crate::mesh::{Boundary, Creasing, SubdivMesh};
-use crate::osd::{Far, INFINITE_SHARPNESS, Level, MAX_ISOLATION, Refiner, Rule};
+use crate::osd::{INFINITE_SHARPNESS, Level, MAX_ISOLATION, Refiner, Rule};
 use crate::patch::PatchKind;
 use crate::stam::LimitSurface;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::Write;
+
+/// Faces up to which all levels are listed without being asked for: some seconds.
+const MANY_FACES: usize = 20_000;
 
 #[derive(Debug, Default, Serialize)]
 struct Info {
@@ -47,11 +54,10 @@ struct Info {
     /// Bytes of the class matrices in f64 and of the tables on the GPU.
     class_table_bytes: usize,
     gpu_table_bytes: u64,
-    /// OpenSubdiv's Far patches at isolation 10: number, and bytes in f64.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    opensubdiv_patches: Option<u64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    opensubdiv_bytes: Option<u64>,
+    /// Bytes of those by layout.
+    gpu_table_bytes_by_layout: BTreeMap<String, u64>,
+    /// OpenSubdiv's feature-adaptive patches, level by level.
+    opensubdiv: Vec<AdaptiveLevel>,
 }
 
 pub(super) fn run(args: &InfoArgs) -> Result<(), Failure> {
@@ -59,11 +65,9 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), Failure> {
     let surface = LimitSurface::new(&mesh).map_err(|e| Failure::of(&mesh, e))?;
     let control = Refiner::uniform(&mesh, 1).and_then(|r| r.level(0)).map_err(|e| Failure::of(&mesh, e))?;
     let mut info = collect(&mesh, &surface, &control);
-    if args.peers {
-        let far = Far::new(&mesh, MAX_ISOLATION).map_err(|e| Failure::of(&mesh, e))?;
-        info.opensubdiv_patches = Some(far.patch_count());
-        info.opensubdiv_bytes = Some(far.bytes());
-    }
+    let deepest = args.levels.unwrap_or(if mesh.face_count() <= MANY_FACES { MAX_ISOLATION } else { 3 });
+    let levels = (1..=deepest).map(|level| AdaptiveLevel::new(&mesh, &surface, level));
+    info.opensubdiv = levels.collect::<Result<_, _>>().map_err(|e| Failure::of(&mesh, e))?;
     let text = if args.json {
         serde_json::to_string_pretty(&info).map_err(std::io::Error::from)? + "\n"
     } else {
@@ -83,6 +87,10 @@ fn collect(mesh: &SubdivMesh, surface: &LimitSurface, control: &Level) -> Info {
         classes: surface.classes().len(),
         class_table_bytes: surface.tables().iter().map(|table| table.bytes()).sum(),
         gpu_table_bytes: gpu::tables::bytes(surface, gpu::TableLayout::Auto),
+        gpu_table_bytes_by_layout: gpu::TableLayout::ALL
+            .iter()
+            .map(|&layout| (layout.to_string(), gpu::tables::bytes(surface, layout)))
+            .collect(),
         boundary: match mesh.boundary {
             Boundary::None => "none",
             Boundary::EdgeOnly => "edge only",
@@ -192,13 +200,12 @@ fn describe(info: &Info) -> String {
         ("classes", format!("{} ({} of matrices)", info.classes, mebibytes(info.class_table_bytes as f64))),
         ("GPU tables", mebibytes(info.gpu_table_bytes as f64)),
     ];
-    if let (Some(patches), Some(bytes)) = (info.opensubdiv_patches, info.opensubdiv_bytes) {
-        let size = mebibytes(bytes as f64);
-        rows.push(("OpenSubdiv's patches", format!("{patches} (isolation {MAX_ISOLATION}: {size} in f64)")));
+    for (layout, &bytes) in &info.gpu_table_bytes_by_layout {
+        rows.push(("  of layout", format!("{layout}: {}", mebibytes(bytes as f64))));
     }
     let mut text = String::new();
     for (name, value) in rows {
         let _ = writeln!(text, "{name:<25} {value}"); // writing to a String cannot fail
     }
-    text
+    text + &adaptive::describe(&info.opensubdiv)
 }

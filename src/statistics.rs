@@ -1,0 +1,67 @@
+//! What errors are summed up in.
+
+use glam::DVec3;
+
+/// Mean, 99th percentile (nearest rank) and maximum.
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize)]
+pub struct Spread {
+    /// How many values there are.
+    pub count: usize,
+    /// Mean.
+    pub mean: f64,
+    /// 99th percentile.
+    pub p99: f64,
+    /// Largest value.
+    pub max: f64,
+}
+
+impl Spread {
+    /// Of all values but NaN.
+    pub fn of(values: impl IntoIterator<Item = f64>) -> Spread {
+        let mut values: Vec<f64> = values.into_iter().filter(|x| !x.is_nan()).collect();
+        values.sort_by(f64::total_cmp);
+        let Some(&max) = values.last() else { return Spread::default() };
+        let count = values.len();
+        let mean = values.iter().sum::<f64>() / count as f64;
+        Spread { count, mean, p99: values[(count * 99).div_ceil(100) - 1], max }
+    }
+}
+
+/// A number of two or three digits, as people read them: 1.2e-5, 0.034, 5.67, 89.
+pub fn short(x: f64) -> String {
+    match x.abs() {
+        0.0 => "0".to_owned(),
+        size if size < 1e-3 => format!("{x:.1e}"),
+        size if size < 0.0995 => format!("{x:.3}"),
+        size if size < 9.95 => format!("{x:.2}"),
+        _ => format!("{x:.0}"),
+    }
+}
+
+/// Angle between two normals in degrees, exact for small ones; NaN where one is none.
+pub fn angle_deg(a: DVec3, b: DVec3) -> f64 {
+    match a != DVec3::ZERO && b != DVec3::ZERO {
+        true => a.cross(b).length().atan2(a.dot(b)).to_degrees(),
+        false => f64::NAN,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short() {
+        let texts = [0.0, 1.23e-5, 0.0336, 0.456, 9.0, 144.4, f64::INFINITY].map(short);
+        assert_eq!(texts, ["0", "1.2e-5", "0.034", "0.46", "9.00", "144", "inf"]);
+    }
+
+    #[test]
+    fn percentiles_are_of_nearest_rank() {
+        let spread = Spread::of((1..=200).map(f64::from).chain([f64::NAN]));
+        assert_eq!(spread, Spread { count: 200, mean: 100.5, p99: 198.0, max: 200.0 });
+        assert_eq!(Spread::of([3.0]), Spread { count: 1, mean: 3.0, p99: 3.0, max: 3.0 });
+        assert_eq!(Spread::of([f64::NAN]).count, 0);
+        assert_eq!(Spread::of([1.0, f64::INFINITY]).max, f64::INFINITY);
+    }
+}
