@@ -21,7 +21,7 @@ pub(in crate::cli) struct ConformanceArgs {
         long,
         value_name = "FILE",
         group = "other",
-        conflicts_with_all = ["results", "json", "junit", "baseline", "only", "plant"]
+        conflicts_with_all = ["results", "json", "junit", "html", "baseline", "only", "plant"]
     )]
     pub samples_out: Option<PathBuf>,
     /// Judge another program's answers instead: a CSV file with face,u,v,x,y,z, and if it has them xu,yu,zu,xv,yv,zv and nx,ny,nz
@@ -79,7 +79,7 @@ pub(super) fn run(args: &VerifyArgs, inputs: &[Input]) -> Result<(), Failure> {
     report.set_source(input.source().as_deref(), "catoptric verify");
     write_out(None, text(path, &report).as_bytes())?;
     let report = Report::new(args.size, vec![report], Vec::new());
-    write_files(args, &report)?;
+    write_files(args, &report, None, &[])?;
     write_out(None, format!("{}\n", report.verdict()).as_bytes())?;
     if report.pass { Ok(()) } else { Err(Failure::Check) }
 }

@@ -10,6 +10,7 @@ use super::{Failure, write_out};
 use crate::gpu::Gpu;
 use crate::osd::Location;
 use crate::output::check_writable;
+use crate::page::{Pictures, page};
 use crate::verify::{Baseline, MeshReport, Refused, Report, Sample, only};
 pub(super) use conformance::ConformanceArgs;
 use inputs::Input;
@@ -19,7 +20,7 @@ use std::time::Instant;
 
 pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
     let start = Instant::now();
-    for path in [&args.json, &args.junit, &args.conformance.samples_out].into_iter().flatten() {
+    for path in [&args.json, &args.junit, &args.html, &args.conformance.samples_out].into_iter().flatten() {
         check_writable(path)?;
     }
     let baseline = args.baseline.as_deref().map(|path| read_baseline(path, args.size)).transpose()?;
@@ -31,18 +32,19 @@ pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
         return one(args, &inputs, sample);
     }
     let gpu = Gpu::new()?;
-    let job = Job { gpu: &gpu, size: args.size, plant: args.plant };
+    let job = Job { gpu: &gpu, size: args.size, plant: args.plant, pictures: args.html.is_some() };
     let show = Show { width: inputs.iter().map(|input| input.name().len()).max().unwrap_or(0), args, of: inputs.len() };
-    let (mut meshes, mut refused) = (Vec::new(), Vec::new());
+    let (mut meshes, mut pictures, mut refused) = (Vec::new(), Vec::new(), Vec::new());
     many::run(&inputs, &job, |input, outcome| {
         match outcome {
-            Outcome::Verified(mut report) => {
+            Outcome::Verified(mut report, shown) => {
                 report.set_source(input.source().as_deref(), &show.flags());
                 if !args.timings {
                     report.timings = None;
                 }
                 show.report(&report)?;
                 meshes.push(*report);
+                pictures.push(shown);
             }
             Outcome::Refused(reason) => {
                 let path = input.source().unwrap_or_default();
@@ -59,7 +61,7 @@ pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
     if let Some((path, baseline)) = args.baseline.as_ref().zip(baseline) {
         report = report.with_baseline(path.display().to_string(), &baseline);
     }
-    write_files(args, &report)?;
+    write_files(args, &report, Some(gpu.adapter()), &pictures)?;
     if let Some(comparison) = &report.baseline {
         write_out(None, comparison.to_string().as_bytes())?;
     }
@@ -68,12 +70,22 @@ pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
 }
 
 /// Writes the report as the files that were asked for.
-fn write_files(args: &VerifyArgs, report: &Report) -> Result<(), Failure> {
+fn write_files(
+    args: &VerifyArgs,
+    report: &Report,
+    adapter: Option<&str>,
+    pictures: &[Pictures],
+) -> Result<(), Failure> {
     if let Some(path) = &args.json {
         write_json(path, report)?;
     }
     if let Some(path) = &args.junit {
         let text = report.junit().map_err(|error| Failure::Bad(format!("{}: {error}", path.display())))?;
+        write_out(Some(path), text.as_bytes())?;
+    }
+    if let Some(path) = &args.html {
+        let text =
+            page(report, adapter, pictures).map_err(|error| Failure::Bad(format!("{}: {error}", path.display())))?;
         write_out(Some(path), text.as_bytes())?;
     }
     Ok(())
