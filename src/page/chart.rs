@@ -38,7 +38,7 @@ const RIGHT: f64 = 10.0;
 const BARS: f64 = 34.0;
 const STEP: f64 = 44.0;
 /// Width and place of the bar of zeros.
-const ZERO: [f64; 2] = [88.0, 10.0];
+const ZERO: [f64; 2] = [86.0, 10.0];
 
 /// Bars of every tier, one above the other, on one axis.
 #[derive(Debug)]
@@ -102,7 +102,8 @@ impl Chart {
         let [first, last] = axis.range;
         let tick = |exponent: i32| Tick {
             x: axis.x(f64::from(exponent)),
-            label: ((exponent - first) % 3 == 0).then(|| format!("1e{exponent}")),
+            // The first would run into that of the zeros.
+            label: (exponent > first && (exponent - first) % 3 == 0).then(|| format!("1e{exponent}")),
         };
         (!tiers.is_empty()).then(|| Chart {
             title: axis.title,
@@ -165,7 +166,9 @@ pub(super) struct Legend {
 
 impl Legend {
     /// Width, in its own units.
-    pub const WIDTH: f64 = 400.0;
+    pub const WIDTH: f64 = 260.0;
+    /// Room for the outer labels.
+    pub const INSET: f64 = 16.0;
 
     pub fn new(scale: &Scale, what: &str) -> Self {
         const STOPS: usize = 8;
@@ -176,7 +179,10 @@ impl Legend {
             (100.0 * part, format!("#{r:02x}{g:02x}{b:02x}"))
         };
         let tick = |exponent: i32| {
-            (10.0 + (Self::WIDTH - 20.0) * f64::from(scale.place(10f32.powi(exponent))), power_of_ten(exponent))
+            (
+                Self::INSET + (Self::WIDTH - 2.0 * Self::INSET) * f64::from(scale.place(10f32.powi(exponent))),
+                power_of_ten(exponent),
+            )
         };
         let id = format!("scale{}{}", scale.least.log10(), scale.most.log10()).replace('.', "-");
         Self {

@@ -32,6 +32,14 @@ struct Page<'a> {
     meshes: Vec<Mesh<'a>>,
 }
 
+impl Page<'_> {
+    /// The verdict's line without its first word, which is there in large letters.
+    fn counts(&self) -> String {
+        let verdict = self.report.verdict();
+        verdict.split_once(": ").map_or(verdict.clone(), |(_, counts)| counts.to_owned())
+    }
+}
+
 /// A mesh and what is shown of it.
 struct Mesh<'a> {
     report: &'a MeshReport,
@@ -107,7 +115,7 @@ impl<'a> Mesh<'a> {
         self.report.patches.values().sum()
     }
 
-    /// Patches by kind, in words.
+    /// Samples in all and patches by kind, in words.
     fn kinds(&self) -> String {
         let kinds = self.report.patches.iter().filter(|(_, count)| **count > 0);
         kinds.map(|(kind, count)| format!("{} {kind}", grouped(*count))).collect::<Vec<_>>().join(", ")
@@ -116,7 +124,11 @@ impl<'a> Mesh<'a> {
     /// Error over tolerance of the sample that uses most of it.
     fn closest(&self) -> String {
         let share = self.report.tiers.iter().filter_map(|row| row.times_allowed).reduce(f64::max);
-        share.map_or("–".to_owned(), |share| format!("{} %", short(100.0 * share)))
+        match share {
+            None => "–".to_owned(),
+            Some(share) if share < 10.0 => format!("{} %", short(100.0 * share)),
+            Some(share) => format!("{share:.1e} times"),
+        }
     }
 
     /// Largest error of OpenSubdiv's end caps: position, degrees.
@@ -124,6 +136,11 @@ impl<'a> Mesh<'a> {
         let rows = || self.report.tiers.iter().filter(|row| row.tier == "endcap");
         let position = rows().map(|row| row.position_max).reduce(f64::max)?;
         Some((position, rows().filter_map(|row| row.normal_max_deg).reduce(f64::max)))
+    }
+
+    /// Normals that were not judged.
+    fn skipped(&self) -> usize {
+        self.report.rows().map(|row| row.normals_skipped).sum()
     }
 
     /// Samples at which the reference is known to be wrong.

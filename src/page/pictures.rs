@@ -16,7 +16,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 /// Side of a picture in pixels: 6 pictures a mesh, so that a page of 37 meshes stays below 20 MB.
-const SIDE: u32 = 400;
+const SIDE: u32 = 480;
 
 /// Of positions of the shader, in parts of the diagonal; 2e-6 is allowed.
 const POSITION: Scale = Scale { least: 1e-11, most: 1e-5 };
