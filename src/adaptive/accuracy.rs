@@ -7,15 +7,18 @@ use crate::statistics::{Spread, angle_deg};
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// Errors of end caps at points scattered over them.
+/// Errors at points scattered over the patches that approximate: end caps, and regular patches over semi-sharp features that
+/// refinement stopped short of, which OpenSubdiv takes for smooth.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Accuracy {
+    /// How many patches approximate.
+    pub patches: usize,
+    /// Part of the parameter area that they cover, counting faces that are quads as 1 and the quadrants of others as 1/4.
+    pub area: f64,
     /// Angle between the normals, degrees; where one of the two has none, nothing.
     pub normal_deg: Spread,
     /// Distance of the positions, in units of the control points' box diagonal.
     pub position: Spread,
-    /// Part of the parameter area that end caps cover, counting faces that are quads as 1 and the quadrants of others as 1/4.
-    pub area: f64,
 }
 
 /// Point `i` of a sequence that fills the unit square evenly (Roberts' R2: multiples of the plastic number's powers).
@@ -24,27 +27,40 @@ fn scatter(i: usize) -> [f64; 2] {
 }
 
 impl AdaptivePatches {
-    /// Compares the end caps with the limit surface of the same mesh, at up to `samples` points, the same number on each cap and at
-    /// least one.
+    /// Compares the patches that approximate with the limit surface of the same mesh, at up to `samples` points, the same number
+    /// on each of them and at least one.
     pub fn accuracy(&self, surface: &LimitSurface, samples: usize) -> Accuracy {
-        let caps: Vec<(usize, &FarPatch)> =
-            self.patches.iter().enumerate().filter(|(_, patch)| patch.is_end_cap).collect();
-        let weight = |patch: &FarPatch| 0.25f64.powi(i32::from(patch.level));
-        let (own, all): (f64, f64) =
-            (caps.iter().map(|(_, patch)| weight(patch)).sum(), self.patches.iter().map(weight).sum());
-        let each = (samples / caps.len().max(1)).max(1);
+        /// Distance, in diagonals, from which a regular patch approximates: far above the rounding of exact ones.
+        const OFF: f64 = 1e-9;
+        /// Points at which that is looked for.
+        const LOOKS: usize = 2;
         let bounds = self.bounds();
         let diagonal = (bounds[1] - bounds[0]).length().max(f64::MIN_POSITIVE);
-        let errors: Vec<[f64; 2]> = caps
+        // Angle and distance at a point.
+        let error = |index: usize, uv: [f64; 2]| {
+            let patch = &self.patches[index];
+            let (_, exact) = surface.evaluate_ptex(patch.ptex, patch.to_ptex(uv))?;
+            let theirs = self.evaluate(index, uv);
+            let distance = exact.position.distance(theirs.position) / diagonal;
+            Some([angle_deg(exact.normal, theirs.normal), distance])
+        };
+        let deepest = self.patches.iter().map(|patch| patch.level).max().unwrap_or(0);
+        let approximates = |index: &usize| {
+            let patch = &self.patches[*index];
+            let is_off = |i: usize| error(*index, scatter(i)).is_some_and(|[_, distance]| distance > OFF);
+            patch.is_end_cap || patch.level == deepest && (0..LOOKS).any(is_off)
+        };
+        let rough: Vec<usize> = (0..self.patches.len()).into_par_iter().filter(approximates).collect();
+        let each = (samples / rough.len().max(1)).max(1);
+        let errors: Vec<[f64; 2]> = rough
             .par_iter()
-            .flat_map_iter(|&(index, patch)| (0..each).map(move |i| (index, patch, scatter(index * each + i))))
-            .filter_map(|(index, patch, uv)| {
-                let (_, exact) = surface.evaluate_ptex(patch.ptex, patch.to_ptex(uv))?;
-                let theirs = self.evaluate(index, uv);
-                Some([angle_deg(exact.normal, theirs.normal), exact.position.distance(theirs.position) / diagonal])
-            })
+            .flat_map_iter(|&index| (0..each).filter_map(move |i| error(index, scatter(index * each + i))))
             .collect();
         let spread = |k: usize| Spread::of(errors.iter().map(|error| error[k]));
-        Accuracy { normal_deg: spread(0), position: spread(1), area: if all > 0.0 { own / all } else { 0.0 } }
+        let weight = |patch: &FarPatch| 0.25f64.powi(i32::from(patch.level));
+        let all: f64 = self.patches.iter().map(weight).sum();
+        let own = rough.iter().fold(0.0, |sum, &index| sum + weight(&self.patches[index]));
+        let area = own / all.max(f64::MIN_POSITIVE);
+        Accuracy { patches: rough.len(), area, normal_deg: spread(0), position: spread(1) }
     }
 }

@@ -116,3 +116,24 @@ fn end_caps_come_closer_with_their_level() {
     println!("{:?}", at.iter().map(|c| c.normal).collect::<Vec<_>>());
     assert!(at[0].normal.max > 0.01, "end caps of level 1 are off: {:?}", at[0].normal);
 }
+
+/// Sharpness 2.3 is resolved at level 3: at level 1 the regular patches beside the crease approximate, though none is an end cap.
+#[test]
+fn regular_patches_over_unresolved_creases_count_as_approximate() {
+    let at = |name: &str, level: u32| {
+        let mesh = mesh(name);
+        let patches = AdaptivePatches::new(&mesh, Isolation::uniform(level), EndCap::Gregory).expect("it is valid");
+        let surface = LimitSurface::new(&mesh).expect("the mesh is valid");
+        (patches.end_caps(), patches.accuracy(&surface, 10_000))
+    };
+    let (caps, early) = at("semi_sharp_crease.obj", 1);
+    assert!(caps == 0 && early.patches > 0 && early.normal_deg.p99 > 1.0 && early.area > 0.0, "{early:?}");
+    let (caps, late) = at("semi_sharp_crease.obj", 5);
+    assert_eq!((caps, late.patches, late.area, late.normal_deg.count), (0, 0, 0.0, 0));
+    // Every face of a cube has four extraordinary vertices: all of it is end caps at level 1, a quarter at level 2.
+    let (caps, cube) = at("cube.obj", 1);
+    assert_eq!((caps, cube.patches, cube.area), (24, 24, 1.0));
+    let (caps, cube) = at("cube.obj", 2);
+    assert_eq!((caps, cube.patches, cube.area), (24, 24, 0.25));
+    assert!(cube.normal_deg.count == 24 * (10_000 / 24) && cube.position.max > 1e-6, "{cube:?}");
+}

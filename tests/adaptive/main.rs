@@ -6,6 +6,7 @@ mod common;
 #[path = "../gpu_support/mod.rs"]
 mod gpu_support;
 
+mod command;
 mod comparison;
 mod evaluation;
 mod pixels;

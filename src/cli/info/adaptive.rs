@@ -5,6 +5,7 @@ use crate::gpu;
 use crate::mesh::SubdivMesh;
 use crate::osd::{EndCap, Error, Isolation};
 use crate::stam::LimitSurface;
+use crate::statistics::short;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -65,7 +66,8 @@ pub(super) fn describe(levels: &[AdaptiveLevel]) -> String {
     let _ = writeln!(
         text,
         "\nOpenSubdiv's feature-adaptive patches, all features isolated to a level. Normals and positions (parts of the\n\
-         diagonal): how far end caps are from the limit, at up to {SAMPLES} points on them."
+         diagonal): how far patches that approximate are from the limit, at up to {SAMPLES} points on them. These are end caps, and\n\
+         regular patches where semi-sharp features are not resolved."
     );
     let _ = writeln!(
         text,
@@ -85,15 +87,16 @@ pub(super) fn describe(levels: &[AdaptiveLevel]) -> String {
             |accuracy: &Accuracy| format!("{:.1e}/{:.1e} deg", accuracy.normal_deg.p99, accuracy.normal_deg.max);
         let _ = writeln!(
             text,
-            "{:>5} {:>8} {:>8} {:>6.2} % {:>10.2} {:>6.0} ms {:>20} {:>9.1e} {:>20}",
+            "{:>5} {:>8} {:>8} {:>8} {:>6.2} % {:>10.2} {:>6.0} ms {:>20} {:>9} {:>20}",
             level.level,
             level.patches,
             level.end_caps,
+            level.gregory.patches,
             100.0 * level.gregory.area,
             level.bytes as f64 / f64::from(1 << 20),
             level.build_ms,
             normal(&level.gregory),
-            level.gregory.position.max,
+            short(level.gregory.position.max),
             normal(&level.bspline),
         );
     }
