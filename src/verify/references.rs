@@ -40,7 +40,7 @@ mod tests {
         for (faces, kept_at_most) in [(1, 1), (2048, 2048), (2049, 1040), (100_000, STENCIL_FACES + RUN)] {
             let samples: Vec<Location> = (0..faces).flat_map(|face| [(face, 0.1, 0.2), (face, 0.3, 0.4)]).collect();
             let kept = thinned(&samples);
-            assert!(kept.len() % 2 == 0 && !kept.is_empty() && kept.len() / 2 <= kept_at_most, "{faces}");
+            assert!(kept.len().is_multiple_of(2) && !kept.is_empty() && kept.len() / 2 <= kept_at_most, "{faces}");
             assert!(kept.chunks(2).all(|pair| pair[0].0 == pair[1].0 && pair[1].1 == 0.3));
             let last = kept[kept.len() - 1].0;
             assert!(f64::from(last) >= 0.98 * f64::from(faces - 1) - RUN as f64, "{faces}: {last}");
