@@ -221,6 +221,26 @@ fn limit_stencils_are_the_patches_as_sums_of_control_points() {
     }
 }
 
+/// Threads share a table: its answers are, bit for bit, those to one sample after the other.
+#[test]
+fn far_answers_many_threads_as_it_answers_one() {
+    let mesh = mesh("n_gons");
+    let far = Far::new(&mesh, 10).expect("a table");
+    let at = |i: u32| (f64::from(i % 97) / 97.0, f64::from(i % 89) / 89.0);
+    let samples: Vec<Location> = (0..20_000).map(|i| (i % 20, at(i).0, at(i).1)).collect();
+    let together = far.evaluate(&samples).expect("it evaluates");
+    std::thread::scope(|scope| {
+        for part in 0..4 {
+            let (far, samples, together) = (&far, &samples, &together);
+            scope.spawn(move || {
+                for i in (part..samples.len()).step_by(40) {
+                    assert_eq!(far.evaluate(&samples[i..=i]).expect("it evaluates"), together[i..=i]);
+                }
+            });
+        }
+    });
+}
+
 /// Calls overlap, and what they are asked together is what they are asked alone.
 #[test]
 fn limit_stencils_do_not_depend_on_what_else_is_asked() {

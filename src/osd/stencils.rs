@@ -44,7 +44,8 @@ impl Drop for LimitStencils {
     }
 }
 
-/// Control faces that are refined at a time: some 50 MB, most of them for the stencils of refined points.
+/// Control faces that are refined at a time. With the stencils of their refined points a face takes up to a megabyte (a mesh
+/// full of semi-sharp creases); with fewer faces the rings round them weigh more.
 const FACES: usize = 256;
 
 /// Samples of a call, 1 to 2 kB each.

@@ -41,10 +41,11 @@ pub(super) fn run(subject: &Subject<'_>, references: &References, bins: &mut Bin
     let faces = subject.faces(quad.len(), BUDGET);
     let samples: Vec<Location> =
         faces.flat_map(|face| grids[face as usize].iter().map(move |&[u, v]| (face, u, v))).collect();
-    let ours = subject.evaluate_all(&samples);
-    compare(subject, Against::Far, &samples, &ours, &references.far.evaluate(&samples)?, bins);
-    let (samples, ours) = thinned(&samples, &ours);
-    compare(subject, Against::LimitStencils, &samples, &ours, &references.stencils.evaluate(&samples)?, bins);
+    let answers = references.far.evaluate(&samples)?;
+    compare(subject, Against::Far, &samples, &subject.evaluate_all(&samples), &answers, bins);
+    let samples = thinned(&samples);
+    let answers = references.stencils.evaluate(&samples)?;
+    compare(subject, Against::LimitStencils, &samples, &subject.evaluate_all(&samples), &answers, bins);
     Ok(())
 }
 

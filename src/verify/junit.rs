@@ -50,7 +50,9 @@ fn suite(mesh: &MeshReport) -> TestSuite {
             }
             (true, None) => TestCaseStatus::success(),
         };
-        let title = format!("{} {} / {}", row.tier, row.kind, row.reference);
+        // Names tell test cases apart.
+        let known = reason.map(|reason| format!(" (reference wrong: {reason})")).unwrap_or_default();
+        let title = format!("{} {} / {}{known}", row.tier, row.kind, row.reference);
         suite.add_test_case(case(name, &title, status));
     }
     if let Some(results) = &mesh.results {

@@ -38,8 +38,8 @@ pub(super) fn scattered(subject: &Subject<'_>, per_face: usize, budget: usize) -
 }
 
 /// Scattered samples inside each of some patches.
-fn inside(subject: &Subject<'_>, patches: impl Iterator<Item = usize>, each: u32) -> Vec<Location> {
-    let in_patch = |index: usize| {
+fn inside(subject: &Subject<'_>, patches: &[usize], each: u32) -> Vec<Location> {
+    let in_patch = |&index: &usize| {
         let patch = &subject.surface.patches()[index];
         let first = (index as u32).wrapping_mul(each) % (1 << 20);
         (first..first + each).map(move |i| {
@@ -47,51 +47,49 @@ fn inside(subject: &Subject<'_>, patches: impl Iterator<Item = usize>, each: u32
             (patch.ptex, u, v)
         })
     };
-    patches.flat_map(in_patch).collect()
+    patches.iter().flat_map(in_patch).collect()
 }
 
 pub(super) fn run(subject: &Subject<'_>, references: &References, bins: &mut Bins) -> Result<(), VerifyError> {
-    let mut judged = vec![false; subject.surface.patches().len()];
     let samples = scattered(subject, PER_FACE, BUDGET);
-    let ours = subject.evaluate_all(&samples);
-    let answers = Bfr::new(subject.mesh, Bfr::DEFAULT_LEVELS)?.evaluate(&samples)?;
+    // Bfr, which has one thread, answers while limit stencils are made.
+    let ask_bfr = || Bfr::new(subject.mesh, Bfr::DEFAULT_LEVELS)?.evaluate(&samples);
+    // A small patch may have been missed: none is, whatever the size of the mesh.
+    let every: Vec<usize> = (0..subject.surface.patches().len()).collect();
+    let mut all = [&*samples, &inside(subject, &every, PER_PATCH)].concat();
+    all.sort_by_key(|sample| sample.0);
+    let kept = thinned(&all);
+    let (bfr, stencils) = rayon::join(ask_bfr, || references.stencils.evaluate(&kept));
+    let answers = bfr?;
     bins.not_asked += answers.iter().filter(|a| a.answer == Answer::NotAsked).count();
-    compare(subject, Against::Bfr, &samples, &ours, &answers, bins);
-    exact(subject, references, &samples, &ours, &mut judged, bins)?;
+    compare(subject, Against::Bfr, &samples, &subject.evaluate_all(&samples), &answers, bins);
+    compare(subject, Against::LimitStencils, &kept, &subject.evaluate_all(&kept), &stencils?, bins);
 
-    // A small patch may have been missed: none is, whatever the size of the mesh. A second round is for those where
-    // OpenSubdiv's end cap took the first samples.
-    for each in [PER_PATCH, MORE_PER_PATCH] {
-        let missed: Vec<usize> = match each {
-            PER_PATCH => (0..judged.len()).collect(),
-            _ => (0..judged.len()).filter(|&patch| !judged[patch]).collect(),
-        };
-        for patches in missed.chunks(BUDGET / each as usize) {
-            let samples = inside(subject, patches.iter().copied(), each);
-            let ours = subject.evaluate_all(&samples);
-            exact(subject, references, &samples, &ours, &mut judged, bins)?;
-        }
-    }
+    let mut judged = vec![false; every.len()];
+    ask_far(subject, references, &all, &mut judged, bins)?;
+    // A second round for patches where OpenSubdiv's end cap took the first samples.
+    let missed: Vec<usize> = every.into_iter().filter(|&patch| !judged[patch]).collect();
+    ask_far(subject, references, &inside(subject, &missed, MORE_PER_PATCH), &mut judged, bins)?;
     bins.unjudged = judged.iter().filter(|judged| !**judged).count();
     Ok(())
 }
 
-/// Compares with limit stencils and Far, and marks the patches that have a sample that was judged.
-fn exact(
+/// Compares with Far, and marks the patches that have a sample that was judged.
+fn ask_far(
     subject: &Subject<'_>,
     references: &References,
     samples: &[Location],
-    ours: &[Option<(usize, Jet)>],
     judged: &mut [bool],
     bins: &mut Bins,
 ) -> Result<(), VerifyError> {
-    let answers = references.far.evaluate(samples)?;
-    compare(subject, Against::Far, samples, ours, &answers, bins);
-    for ((patch, _), answer) in ours.iter().zip(&answers).filter_map(|(ours, answer)| Some(((*ours)?, answer))) {
-        judged[patch] |= answer.answer == Answer::Regular;
+    // Portions bound the memory of the answers.
+    for samples in samples.chunks(BUDGET) {
+        let ours = subject.evaluate_all(samples);
+        let answers = references.far.evaluate(samples)?;
+        compare(subject, Against::Far, samples, &ours, &answers, bins);
+        let regular = ours.iter().zip(&answers).filter(|(_, answer)| answer.answer == Answer::Regular);
+        regular.filter_map(|(ours, _)| *ours).for_each(|(patch, _)| judged[patch] = true);
     }
-    let (samples, ours) = thinned(samples, ours);
-    compare(subject, Against::LimitStencils, &samples, &ours, &references.stencils.evaluate(&samples)?, bins);
     Ok(())
 }
 

@@ -16,12 +16,13 @@ impl MeshReport {
             "{verdict}  {:<width$} {:>8} faces {patches:>9} patches {samples:>9} samples",
             self.mesh, self.faces
         );
+        let share = |row: &Tier| row.times_allowed.unwrap_or_default();
         let closest = self.tiers.iter().filter(|row| row.pass && row.times_allowed.is_some());
-        match (&self.failures, closest.max_by(|a, b| a.times_allowed.partial_cmp(&b.times_allowed).expect("no NaN"))) {
+        match (&self.failures, closest.max_by(|a, b| share(a).total_cmp(&share(b)))) {
             (Some(failures), _) => write!(line, "  {failures}"),
             (None, Some(row)) => {
-                let share = 100.0 * row.times_allowed.unwrap_or_default();
-                write!(line, "  {share:>4.1}% of its tolerance ({} {} / {})", row.tier, row.kind, row.reference)
+                let percent = 100.0 * share(row);
+                write!(line, "  {percent:>4.1}% of its tolerance ({} {} / {})", row.tier, row.kind, row.reference)
             }
             (None, None) => Ok(()),
         }

@@ -1,20 +1,13 @@
 //! The conformance test of other programs: right answers pass, every usual mistake fails and is named, bad files are refused.
 
-mod common;
-
-use catoptric::mesh::{self, Boundary, SubdivMesh};
+use super::own;
+use catoptric::mesh::{Boundary, Creasing, SubdivMesh};
 use catoptric::stam::LimitSurface;
 use catoptric::verify::conformance::{Answer, Results, Terms, Tolerances, conformance, sample_set};
 use catoptric::verify::{MeshReport, Sample};
 use glam::DVec3;
-use std::path::Path;
 
 const PER_FACE: usize = 40;
-
-fn mesh(name: &str) -> SubdivMesh {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes").join(name).with_extension("obj");
-    mesh::read(&path).expect("a test mesh is valid")
-}
 
 /// A program that is right, but for what `change` does to the sample that it evaluates and `spoil` to its answer.
 fn answers(
@@ -56,7 +49,7 @@ fn right_answers_pass_on_every_mesh() {
         per_face: PER_FACE,
         partial: false,
     };
-    for mesh in common::meshes() {
+    for mesh in super::common::meshes() {
         let right = answers(&mesh, &mesh, Some, |answer| answer);
         let report = conformance(&mesh, &right, &terms).expect("it can be judged");
         let results = results(&report);
@@ -86,7 +79,7 @@ fn turned(turns: u32, s: Sample) -> Sample {
 
 #[test]
 fn mistakes_about_parameters_are_named() {
-    let mesh = mesh("semi_sharp_pole_5");
+    let mesh = own("semi_sharp_pole_5");
     let found = diagnosis(&mesh, &answers(&mesh, &mesh, |s| Some(Sample { u: s.v, v: s.u, ..s }), |a| a));
     assert_eq!(found, ["position: u and v are swapped"]);
     for turns in 1..4 {
@@ -112,7 +105,7 @@ fn ptex(mesh: &SubdivMesh) -> Vec<(u32, u32)> {
 
 #[test]
 fn mistakes_about_face_numbers_are_named() {
-    let mesh = mesh("n_gons");
+    let mesh = own("n_gons");
     let faces = ptex(&mesh);
     assert!(faces.iter().any(|f| f.1 == 1) && faces.iter().any(|f| f.1 > 1));
     // Quads by the numbers of the control mesh; what it takes for n-gons it does not answer.
@@ -132,7 +125,7 @@ fn mistakes_about_face_numbers_are_named() {
 
 #[test]
 fn mistakes_about_derivatives_and_normals_are_named() {
-    let mesh = mesh("n_gons");
+    let mesh = own("n_gons");
     let faces = ptex(&mesh);
     let on_n_gon = |face: u32| faces.iter().rfind(|f| f.0 <= face).is_some_and(|f| f.1 > 1);
     let scaled = |by: f64| move |a: Answer| Answer { derivatives: a.derivatives.map(|d| d.map(|d| by * d)), ..a };
@@ -151,7 +144,7 @@ fn mistakes_about_derivatives_and_normals_are_named() {
     let found = diagnosis(&mesh, &answers(&mesh, &mesh, Some, flipped));
     assert_eq!(found, ["normal: the normals point the other way: they are to be du x dv"]);
     // By the parameters of patches, as our own evaluator has them inside.
-    let semi_sharp = self::mesh("semi_sharp_corner");
+    let semi_sharp = own("semi_sharp_corner");
     let surface = LimitSurface::new(&semi_sharp).expect("it is valid");
     let local = |a: Answer| {
         let patch = surface.locate(a.at.face, [a.at.u, a.at.v]).map(|(patch, _)| surface.patches()[patch]);
@@ -168,21 +161,21 @@ fn mistakes_about_derivatives_and_normals_are_named() {
 
 #[test]
 fn mistakes_about_rules_are_named() {
-    let edge_only = mesh("boundary_edge_only");
+    let edge_only = own("boundary_edge_only");
     let other = SubdivMesh { boundary: Boundary::EdgeAndCorner, ..edge_only.clone() };
     let found = diagnosis(&edge_only, &answers(&edge_only, &other, Some, |a| a));
     assert_eq!(found, ["position: the boundary rule is edge and corner, the mesh asks for edge only"]);
     let found = diagnosis(&other, &answers(&other, &edge_only, Some, |a| a));
     assert_eq!(found, ["position: the boundary rule is edge only, the mesh asks for edge and corner"]);
-    let creased = mesh("semi_sharp_crease");
+    let creased = own("semi_sharp_crease");
     let smooth = SubdivMesh { creases: Vec::new(), ..creased.clone() };
     let found = diagnosis(&creased, &answers(&creased, &smooth, Some, |a| a));
     assert_eq!(found, ["position: creases and corners are ignored"]);
-    let chaikin = mesh("chaikin_crease");
-    let uniform = SubdivMesh { creasing: mesh::Creasing::Uniform, ..chaikin.clone() };
+    let chaikin = own("chaikin_crease");
+    let uniform = SubdivMesh { creasing: Creasing::Uniform, ..chaikin.clone() };
     let found = diagnosis(&chaikin, &answers(&chaikin, &uniform, Some, |a| a));
     assert_eq!(found, ["position: sharpness decays by the uniform rule, the mesh asks for Chaikin's"]);
-    let holed = mesh("hole");
+    let holed = own("hole");
     let filled = SubdivMesh { holes: Vec::new(), ..holed.clone() };
     let found = diagnosis(&holed, &answers(&holed, &filled, Some, |a| a));
     assert_eq!(found, ["position: holes are filled"]);
@@ -190,7 +183,7 @@ fn mistakes_about_rules_are_named() {
 
 #[test]
 fn lack_of_digits_and_end_caps_are_named() {
-    let far_off = mesh("pole_5").translated(DVec3::splat(1000.0));
+    let far_off = own("pole_5").translated(DVec3::splat(1000.0));
     let single = |p: DVec3| p.as_vec3().as_dvec3();
     let rounded = |a: Answer| Answer { position: a.position.map(single), ..a };
     let found = diagnosis(&far_off, &answers(&far_off, &far_off, Some, rounded));
@@ -198,7 +191,7 @@ fn lack_of_digits_and_end_caps_are_named() {
         found.len() == 1 && found[0].starts_with("position: the errors are as large as the rounding of 32-bit"),
         "{found:?}"
     );
-    let mesh = mesh("pole_5");
+    let mesh = own("pole_5");
     let surface = LimitSurface::new(&mesh).expect("it is valid");
     let capped = |a: Answer| match surface.locate(a.at.face, [a.at.u, a.at.v]) {
         Some((patch, [u, v])) if surface.class(patch).is_some() => {
@@ -219,7 +212,7 @@ fn lack_of_digits_and_end_caps_are_named() {
 
 #[test]
 fn what_is_not_answered_is_no_pass() {
-    let mesh = mesh("hole");
+    let mesh = own("hole");
     let right = answers(&mesh, &mesh, Some, |a| a);
     let on_surface = right.iter().filter(|a| a.position.is_some()).count();
     assert!(on_surface < right.len());

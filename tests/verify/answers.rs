@@ -1,11 +1,12 @@
 //! The conformance test as a user of another program meets it: files in and out, exit codes, the example in Python.
 
+use super::command::schema_errors;
+use super::{file, json, text};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 fn mesh(name: &str) -> String {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes").join(name).with_extension("obj");
-    path.to_str().expect("a UTF-8 path").to_owned()
+    file(name).to_str().expect("a UTF-8 path").to_owned()
 }
 
 struct Folder(tempfile::TempDir);
@@ -34,7 +35,7 @@ impl Folder {
     /// Runs what must end with this exit code; what it says on both outputs.
     fn ends(&self, code: i32, args: &[&str]) -> String {
         let output = self.run(args);
-        let text = String::from_utf8_lossy(&[output.stdout, output.stderr].concat()).into_owned();
+        let text = text(&[output.stdout, output.stderr].concat());
         assert_eq!(output.status.code(), Some(code), "{args:?}: {text}");
         text
     }
@@ -52,13 +53,11 @@ fn our_own_answers_pass_by_every_backend() {
         let args = ["verify", &mesh, "--results", "r.csv", "--samples", "30", "--json", "v.json", "--junit", "v.xml"];
         let text = folder.ends(0, &[&args[..], &["--tolerance", tolerance]].concat());
         assert!(text.contains("r.csv for hole: pass"), "{text}");
-        let report: serde_json::Value = serde_json::from_str(&folder.read("v.json")).expect("JSON");
+        let report = json(&folder.path("v.json"));
         let mesh = &report["meshes"][0];
         assert_eq!((&report["pass"], &mesh["results"]["complete"]), (&true.into(), &true.into()));
         assert!(mesh["tiers"].as_array().expect("rows").iter().all(|row| row["tier"] == "results"));
-        let schema = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/verify-report.schema.json");
-        let schema = serde_json::from_slice(&std::fs::read(schema).expect("it is there")).expect("JSON");
-        jsonschema::validate(&schema, &report).expect("the report has the form that the schema describes");
+        assert_eq!(schema_errors(&report), [""; 0]);
         assert!(folder.read("v.xml").contains("standard samples answered"));
     }
     // A part is no pass unless it is asked for.
@@ -144,7 +143,7 @@ fn the_example_in_python_conforms() {
         folder.ends(0, &["verify", &mesh, "--samples-out", "samples.csv"]);
         let args = [&mesh, "samples.csv"];
         let python = Command::new("python3").arg(&script).args(args).current_dir(&folder.0).output().expect("python3");
-        assert!(python.status.success(), "{}", String::from_utf8_lossy(&python.stderr));
+        assert!(python.status.success(), "{}", text(&python.stderr));
         std::fs::write(folder.path("results.csv"), python.stdout).expect("a writable folder");
         // It counts in 64 bits, so it is as good as the rounding of 64 bits.
         let args = ["verify", &mesh, "--results", "results.csv", "--partial", "--tolerance", "1e-12,1e-6"];
