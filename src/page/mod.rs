@@ -132,10 +132,11 @@ impl<'a> Mesh<'a> {
     }
 
     /// Largest error of OpenSubdiv's end caps: position, degrees.
-    fn end_caps(&self) -> Option<(f64, Option<f64>)> {
+    fn end_caps(&self) -> Option<(f64, String)> {
         let rows = || self.report.tiers.iter().filter(|row| row.tier == "endcap");
         let position = rows().map(|row| row.position_max).reduce(f64::max)?;
-        Some((position, rows().filter_map(|row| row.normal_max_deg).reduce(f64::max)))
+        let normal = rows().filter_map(|row| row.normal_max_deg).reduce(f64::max);
+        Some((position, normal.map_or("–".to_owned(), short)))
     }
 
     /// Normals that were not judged.

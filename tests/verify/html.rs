@@ -49,7 +49,9 @@ fn a_page_has_everything_and_needs_nothing() {
     assert_eq!(links.len(), 3);
     assert!(links.iter().all(|link| link.strip_prefix('#').is_some_and(|id| ids.contains(id))), "{links:?}");
     // Nothing is fetched, nothing runs.
-    assert!(all(&html, "script, iframe, object, embed").is_empty() && !page.contains("url(h") && !page.contains("@import"));
+    assert!(
+        all(&html, "script, iframe, object, embed").is_empty() && !page.contains("url(h") && !page.contains("@import")
+    );
     for element in all(&html, "[src], link, use, image") {
         let source = ["src", "href", "xlink:href"].iter().find_map(|name| element.attr(name)).expect("a source");
         assert!(source.starts_with("data:"), "{source:.80}");
@@ -102,7 +104,8 @@ fn answers_have_a_page() {
     let folder = folder(&["cube"]);
     run(folder.path(), &["cube.obj", "--samples-out", "s.csv"]);
     let eval = ["eval", "cube.obj", "--samples", "s.csv", "-o", "r.csv"];
-    let output = Command::new(env!("CARGO_BIN_EXE_catoptric")).args(eval).current_dir(&folder).output().expect("it starts");
+    let output =
+        Command::new(env!("CARGO_BIN_EXE_catoptric")).args(eval).current_dir(&folder).output().expect("it starts");
     assert!(output.status.success());
     let swapped = fs::read_to_string(folder.path().join("r.csv")).expect("it is there").replacen("u,v", "v,u", 1);
     fs::write(folder.path().join("swapped.csv"), swapped).expect("it is written");
