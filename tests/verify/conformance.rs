@@ -202,6 +202,15 @@ fn lack_of_digits_and_end_caps_are_named() {
     };
     let found = diagnosis(&mesh, &answers(&mesh, &mesh, Some, capped));
     assert!(found.len() == 1 && found[0].contains("seem to be approximated (as by end caps)"), "{found:?}");
+    // Nearly right derivatives are no scaled ones.
+    let rough = |a: Answer| match surface.locate(a.at.face, [a.at.u, a.at.v]) {
+        Some((patch, _)) if surface.class(patch).is_some() => {
+            Answer { derivatives: a.derivatives.map(|d| d.map(|d| 1.003 * d)), ..a }
+        }
+        _ => a,
+    };
+    let found = diagnosis(&mesh, &answers(&mesh, &mesh, Some, rough));
+    assert!(found.len() == 1 && found[0].contains("seem to be approximated"), "{found:?}");
     // And what is none of them is not called one.
     let noise = |a: Answer| Answer {
         position: a.position.map(|p| p + 0.1 * DVec3::splat((1e3 * a.at.u + 77.0 * a.at.v).sin())),

@@ -187,20 +187,25 @@ impl Search<'_> {
     }
 
     fn derivatives(&self, failing: &[&Judged]) -> Option<Finding> {
-        let given = |j: &Judged| Some((j.0.derivatives?, j.1?.0));
-        type Pair = ([DVec3; 2], Jet);
-        let pairs: Vec<Pair> = failing.iter().filter_map(|j| given(j)).collect();
+        /// Derivatives, those of the limit, and the length that a mistake may leave of their difference.
+        type Pair = ([DVec3; 2], [DVec3; 2], f64);
+        let unit = self.judge.subject.rounding.unit;
+        let given = |j: &&Judged| -> Option<Pair> {
+            let (jet, difference) = j.1?;
+            let Check { error, allowed } = difference.derivative?;
+            Some((j.0.derivatives?, [jet.du, jet.dv], unit * allowed.max(LEFT * error)))
+        };
+        let pairs: Vec<Pair> = failing.iter().filter_map(given).collect();
         if pairs.is_empty() {
             return None;
         }
-        let near = |a: DVec3, b: DVec3| a.distance(b) <= LEFT * a.length().max(b.length());
-        let both = |[a, b]: [DVec3; 2], [c, d]: [DVec3; 2]| near(a, c) && near(b, d);
         let count = |fits: &dyn Fn(&Pair) -> bool| pairs.iter().filter(|pair| fits(pair)).count();
+        let both = |[a, b]: [DVec3; 2], [c, d]: [DVec3; 2], left| a.distance(c) <= left && b.distance(d) <= left;
         let mut mistakes = vec![(
             "the derivatives by u and by v are swapped".to_owned(),
-            count(&|([du, dv], jet)| both([*dv, *du], [jet.du, jet.dv])),
+            count(&|&([du, dv], exact, left)| both([dv, du], exact, left)),
         )];
-        let scaled = |by: f64| move |([du, dv], jet): &Pair| both([*du, *dv], [by * jet.du, by * jet.dv]);
+        let scaled = |by: f64| move |&(given, exact, left): &Pair| both(given, exact.map(|d| by * d), left);
         for (by, name) in [(0.5, "half as long as"), (2.0, "twice as long as"), (-1.0, "opposite to")] {
             mistakes.push((
                 format!("the derivatives are {name} those by the u and v of the ptex face"),
@@ -209,8 +214,8 @@ impl Search<'_> {
         }
         // By the parameters of patches of any size.
         let power_of_two = |pair: &Pair| {
-            let by = 2f64.powf((pair.0[0].length() / pair.1.du.length()).log2().round());
-            by.is_finite() && scaled(by)(pair)
+            let by = 2f64.powf((pair.0[0].length() / pair.1[0].length()).log2().round());
+            by.is_finite() && by != 1.0 && scaled(by)(pair)
         };
         mistakes.push((
             "the derivatives are by the u and v of sub-patches (powers of two), not of the ptex face".to_owned(),

@@ -39,12 +39,13 @@ const QUARTERS: [[u8; 2]; 25] = [
     [1, 2],
 ];
 
-/// Towards an extraordinary vertex, samples are scaled by 2^-k: from the patch itself to where an interpolated 32-bit parameter ends.
+/// Towards an extraordinary vertex, the larger parameter of the patch is about 2^-k: from the patch itself to where a 32-bit parameter
+/// that was interpolated ends (24 bits).
 const NEARER: [i32; 7] = [0, 1, 3, 6, 10, 15, 20];
 
 /// The sample set of a surface: `per_face` points of every ptex face, holes included, where the right answer is none.
 ///
-/// Each face has the [quarters](QUARTERS) first, then in turn points scattered over the face and over its patches, those with an
+/// Each face has its quarters first, then in turn points scattered over the face and over its patches, those with an
 /// extraordinary vertex and the deepest first. It depends on the surface alone, and a smaller set is the beginning of each
 /// face of a larger one.
 pub fn sample_set(surface: &LimitSurface, per_face: usize) -> impl Iterator<Item = Sample> {
@@ -69,11 +70,21 @@ fn on_face(face: u32, patches: Vec<&Patch>) -> impl Iterator<Item = Sample> {
                 PatchKind::Regular => 0,
                 _ => NEARER[i as usize / patches.len() % NEARER.len()],
             };
-            patch.to_ptex(scatter(first + 2 * i + 1).map(|x| x * 0.5f64.powi(nearer)))
+            patch.to_ptex(towards_corner(scatter(first + 2 * i + 1), nearer))
         });
         [Some(over_face), over_patch].into_iter().flatten()
     });
     quarters.chain(scattered).map(move |[u, v]| Sample { face, u, v })
+}
+
+/// A point of the unit square, moved towards (0,0) until its larger coordinate is 2^-nearer to half of that.
+fn towards_corner(point: [f64; 2], nearer: i32) -> [f64; 2] {
+    if nearer == 0 {
+        return point;
+    }
+    let [least, most] = [point[0].min(point[1]), point[0].max(point[1])];
+    let larger = 0.5f64.powi(nearer) * (1.0 - 0.5 * least / most);
+    point.map(|x| x / most * larger)
 }
 
 #[cfg(test)]
