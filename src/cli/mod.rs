@@ -9,6 +9,7 @@ mod info;
 mod patches;
 mod render;
 mod rig;
+mod rows;
 mod settings;
 mod verify;
 
@@ -154,6 +155,11 @@ impl Steps {
             self.bar.set_draw_target(indicatif::ProgressDrawTarget::stderr());
         }
         self.bar.inc(1);
+    }
+
+    /// Runs what writes to the terminal, with the bar out of the way.
+    fn aside<R>(&self, write: impl FnOnce() -> R) -> R {
+        self.bar.suspend(write)
     }
 }
 

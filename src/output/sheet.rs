@@ -105,7 +105,7 @@ impl Page {
 }
 
 /// As people write it: 0.01, but 1e-6.
-fn power_of_ten(exponent: i32) -> String {
+pub(crate) fn power_of_ten(exponent: i32) -> String {
     match exponent {
         -3..=3 => format!("{}", 10f64.powi(exponent)),
         _ => format!("1e{exponent}"),
