@@ -107,7 +107,7 @@ impl View {
     pub fn new(camera: Camera, light: Light) -> View {
         View {
             camera,
-            field: Field::Reflection(light),
+            field: Field::reflection(light),
             pattern: Pattern::Stripes { width: 0.42 },
             pipeline: Pipeline::default(),
             stage: Stage::default(),
@@ -120,9 +120,7 @@ impl View {
 
     /// The light plane of the field.
     pub fn light(&self) -> &Light {
-        match &self.field {
-            Field::Reflection(light) => light,
-        }
+        &self.field.light
     }
 
     /// Refuses what cannot be drawn.
