@@ -109,6 +109,7 @@ impl Module {
 const RECORDS: &str = include_str!("../../shaders/shared/records.wgsl");
 const TABLES: &str = include_str!("../../shaders/shared/tables.wgsl");
 const LIMIT_POINT: &str = include_str!("../../shaders/shared/limit_point.wgsl");
+const BASIS: &str = include_str!("../../shaders/shared/basis.wgsl");
 const GREGORY: &str = include_str!("../../shaders/shared/gregory.wgsl");
 const CERTIFICATE: &str = include_str!("../../shaders/shared/certificate.wgsl");
 const CHART: &str = include_str!("../../shaders/shared/chart.wgsl");
@@ -121,11 +122,19 @@ const REFLECTION: &str = include_str!("../../shaders/field/reflection.wgsl");
 
 /// Rasterises the proxy.
 pub const VISIBILITY: Module =
-    Module { name: "visibility", files: &[RECORDS, TABLES, GREGORY, LIMIT_POINT, VISIBILITY_PASS] };
+    Module { name: "visibility", files: &[RECORDS, TABLES, BASIS, GREGORY, LIMIT_POINT, VISIBILITY_PASS] };
 /// What the proxy covers.
 pub const RECTANGLE: Module = Module {
     name: "rectangle",
-    files: &[RECORDS, TABLES, GREGORY, LIMIT_POINT, VISIBILITY_PASS, include_str!("../../shaders/rectangle.wgsl")],
+    files: &[
+        RECORDS,
+        TABLES,
+        BASIS,
+        GREGORY,
+        LIMIT_POINT,
+        VISIBILITY_PASS,
+        include_str!("../../shaders/rectangle.wgsl"),
+    ],
 };
 /// Exact positions, drawn as points.
 pub const POINTS: Module = Module {
@@ -133,6 +142,7 @@ pub const POINTS: Module = Module {
     files: &[
         RECORDS,
         TABLES,
+        BASIS,
         GREGORY,
         LIMIT_POINT,
         VISIBILITY_PASS,
@@ -146,6 +156,7 @@ pub const LIMIT: Module = Module {
     files: &[
         RECORDS,
         TABLES,
+        BASIS,
         GREGORY,
         LIMIT_POINT,
         REFLECTION,
@@ -171,7 +182,7 @@ pub const RESOLVE: Module =
 /// Limit at samples.
 pub const EVALUATE: Module = Module {
     name: "evaluate",
-    files: &[RECORDS, TABLES, GREGORY, LIMIT_POINT, include_str!("../../shaders/evaluate.wgsl")],
+    files: &[RECORDS, TABLES, BASIS, GREGORY, LIMIT_POINT, include_str!("../../shaders/evaluate.wgsl")],
 };
 
 /// Samples solved on the host.
