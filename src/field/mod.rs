@@ -90,6 +90,11 @@ impl Method {
         )
     }
 
+    /// Whether values are coordinates of the light plane, so that its extents bound the pattern.
+    pub fn is_bounded(&self) -> bool {
+        matches!(self, Method::Reflection | Method::Section | Method::Highlight(HighlightKind::Array))
+    }
+
     /// Name, as in `shaders/field/NAME.wgsl`.
     pub fn name(&self) -> &'static str {
         match self {

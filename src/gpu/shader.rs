@@ -4,6 +4,7 @@ use super::NO_PATCH;
 use super::charts::BAND;
 use super::records::ChartRecord;
 use super::tables::TABLE_LEVELS;
+use crate::field::Method;
 use crate::stam::LEVELS;
 
 /// Kind of a patch of 16 points.
@@ -91,16 +92,26 @@ pub struct Module {
 }
 
 impl Module {
-    /// The whole source, constants first.
-    pub fn source(&self) -> String {
-        self.source_for(&Variant { block_rows: BLOCK_ROWS, has_tail: true, has_gregory: true })
+    /// The whole source, constants first, for a field and for all that tables may hold.
+    pub fn source(&self, method: &Method) -> String {
+        // Levels that are given by picked points have no second derivatives.
+        let variant = Variant { block_rows: BLOCK_ROWS, has_tail: !method.reads_curvature(), has_gregory: true };
+        self.source_for(&variant, &method.wgsl())
     }
 
-    /// The same for other tables.
-    pub(super) fn source_for(&self, variant: &Variant) -> String {
+    /// Whether it depends on the field.
+    pub(super) fn reads_field(&self) -> bool {
+        self.files.contains(&FIELD)
+    }
+
+    /// The same for other tables, and the source of a field.
+    pub(super) fn source_for(&self, variant: &Variant, field: &str) -> String {
         let mut source = constants(variant);
-        for file in self.files {
-            source.push_str(file);
+        if !self.reads_field() {
+            source.push_str("const READS_CURVATURE = false;\n");
+        }
+        for &file in self.files {
+            source.push_str(if file == FIELD { field } else { file });
         }
         source
     }
@@ -118,11 +129,14 @@ const VISIBILITY_PASS: &str = include_str!("../../shaders/visibility.wgsl");
 const SURFACE: &str = include_str!("../../shaders/shared/surface.wgsl");
 const OCTAHEDRAL: &str = include_str!("../../shaders/shared/octahedral.wgsl");
 const PATTERN: &str = include_str!("../../shaders/shared/pattern.wgsl");
-const REFLECTION: &str = include_str!("../../shaders/field/reflection.wgsl");
+const CURVATURE: &str = include_str!("../../shaders/shared/curvature.wgsl");
+const LIGHT: &str = include_str!("../../shaders/field/light.wgsl");
+/// Stands for the source of a field ([`Method::wgsl`]).
+const FIELD: &str = "field";
 
 /// Rasterises the proxy.
 pub const VISIBILITY: Module =
-    Module { name: "visibility", files: &[RECORDS, TABLES, BASIS, GREGORY, LIMIT_POINT, VISIBILITY_PASS] };
+    Module { name: "visibility", files: &[RECORDS, TABLES, BASIS, GREGORY, CURVATURE, LIMIT_POINT, VISIBILITY_PASS] };
 /// What the proxy covers.
 pub const RECTANGLE: Module = Module {
     name: "rectangle",
@@ -131,6 +145,7 @@ pub const RECTANGLE: Module = Module {
         TABLES,
         BASIS,
         GREGORY,
+        CURVATURE,
         LIMIT_POINT,
         VISIBILITY_PASS,
         include_str!("../../shaders/rectangle.wgsl"),
@@ -144,6 +159,7 @@ pub const POINTS: Module = Module {
         TABLES,
         BASIS,
         GREGORY,
+        CURVATURE,
         LIMIT_POINT,
         VISIBILITY_PASS,
         FULLSCREEN,
@@ -158,8 +174,10 @@ pub const LIMIT: Module = Module {
         TABLES,
         BASIS,
         GREGORY,
+        CURVATURE,
         LIMIT_POINT,
-        REFLECTION,
+        LIGHT,
+        FIELD,
         OCTAHEDRAL,
         SURFACE,
         FULLSCREEN,
@@ -169,12 +187,12 @@ pub const LIMIT: Module = Module {
 /// Interpolated surface per pixel.
 pub const POLYGON: Module = Module {
     name: "polygon",
-    files: &[RECORDS, REFLECTION, OCTAHEDRAL, SURFACE, FULLSCREEN, include_str!("../../shaders/polygon.wgsl")],
+    files: &[RECORDS, LIGHT, FIELD, OCTAHEDRAL, SURFACE, FULLSCREEN, include_str!("../../shaders/polygon.wgsl")],
 };
 /// Colour.
 pub const SHADE: Module = Module {
     name: "shade",
-    files: &[REFLECTION, OCTAHEDRAL, PATTERN, FULLSCREEN, include_str!("../../shaders/shade.wgsl")],
+    files: &[LIGHT, OCTAHEDRAL, PATTERN, FULLSCREEN, include_str!("../../shaders/shade.wgsl")],
 };
 /// Linear sum to sRGB.
 pub const RESOLVE: Module =
@@ -182,7 +200,7 @@ pub const RESOLVE: Module =
 /// Limit at samples.
 pub const EVALUATE: Module = Module {
     name: "evaluate",
-    files: &[RECORDS, TABLES, BASIS, GREGORY, LIMIT_POINT, include_str!("../../shaders/evaluate.wgsl")],
+    files: &[RECORDS, TABLES, BASIS, GREGORY, CURVATURE, LIMIT_POINT, include_str!("../../shaders/evaluate.wgsl")],
 };
 
 /// Samples solved on the host.

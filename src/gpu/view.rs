@@ -1,7 +1,8 @@
 //! What to draw, and its f64-composed records for the shaders.
 
+use super::fields::FieldNumbers;
 use super::records::{FrameRecord, LightRecord, ResolveRecord, ShadeRecord};
-use super::shader::{PATTERN_CIRCLES, PATTERN_LATTICE, PATTERN_PICTURE, PATTERN_STRIPES};
+use super::shader::{Content, PATTERN_CIRCLES, PATTERN_LATTICE, PATTERN_PICTURE, PATTERN_STRIPES};
 use super::{GpuError, Tables};
 use crate::field::{Camera, Field, Light, Pattern, Projection};
 use glam::DVec3;
@@ -124,8 +125,11 @@ impl View {
     }
 
     /// Refuses what cannot be drawn.
-    pub(super) fn check(&self) -> Result<(), GpuError> {
+    pub(super) fn check(&self, tables: &Tables) -> Result<(), GpuError> {
         let fail = |message: String| Err(GpuError::View(message));
+        if self.field.method.reads_curvature() && tables.content() == Content::Tails {
+            return fail("curvature is read from tables in the expanded layout only (--tables expanded)".into());
+        }
         let Camera { eye, target, up, projection, size } = self.camera;
         if size.iter().any(|n| !(1..=MAX_SIZE).contains(n)) {
             return fail(format!("picture size {}x{}: each side must be 1 to {MAX_SIZE} pixels", size[0], size[1]));
@@ -282,24 +286,26 @@ impl View {
 
     /// The light relative to the viewpoint, and lines of sight.
     pub(super) fn light_record(&self, tables: &Tables) -> LightRecord {
-        /// Stands for an infinite extent: finite, so that shader arithmetic stays defined.
-        const ENDLESS: f64 = 1e30;
         let light = self.light();
         let unit = tables.unit();
-        let half = light.half.map(|h| (h / unit).min(ENDLESS) as f32);
+        let FieldNumbers { kind, parameter, spacing, half, lines } = FieldNumbers::new(&self.field, unit);
         let (sight, from_eye) = match self.camera.is_orthographic() {
             true => (self.camera.axes().forward, 0.0),
             false => (DVec3::ZERO, 1.0),
         };
         LightRecord {
             center: ((light.center - self.viewpoint(tables)) / unit).as_vec3().to_array(),
-            spacing: (light.spacing / unit) as f32,
+            spacing,
             axis_x: light.axes[0].as_vec3().to_array(),
             half_x: half[0],
             axis_y: light.axes[1].as_vec3().to_array(),
             half_y: half[1],
             sight: sight.as_vec3().to_array(),
             from_eye,
+            kind,
+            parameter,
+            lines,
+            unit: unit as f32,
         }
     }
 
@@ -328,7 +334,9 @@ impl View {
             padding2: 0.0,
             key: key.as_vec3().to_array(),
             padding3: 0.0,
-            picture_scale: (self.pattern.picture_scale(self.light()) * tables.unit()).as_vec2().to_array(),
+            picture_scale: (self.pattern.picture_scale(self.light()) * self.field.method.scale(tables.unit()))
+                .as_vec2()
+                .to_array(),
             padding4: [0.0; 2],
         }
     }
