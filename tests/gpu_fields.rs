@@ -67,9 +67,11 @@ fn shaders_read_what_f64_reads() {
             for &i in &seen {
                 if let (Some(found), Some(expected)) = (image.field[i], expected(i))
                     && matches!(method, Method::Reflection | Method::Section)
+                    // Not near the horizon, where f32 loses them.
+                    && expected.length() < 100.0 * diagonal
                 {
                     assert!(
-                        (found.y - expected.y).abs() <= 1e-4 * (expected.length() + diagonal),
+                        (found.y - expected.y).abs() <= 1e-5 * (expected.length() + diagonal),
                         "{found} {expected}"
                     );
                 }
