@@ -2,10 +2,10 @@
 
 use std::{env, path::PathBuf};
 
-const SHIM: [&str; 2] = ["ffi/refiner.cpp", "ffi/reference.cpp"];
+const SHIM: [&str; 3] = ["ffi/refiner.cpp", "ffi/reference.cpp", "ffi/stencils.cpp"];
 
 fn main() {
-    for file in SHIM.iter().chain(&["ffi/osd.h", "ffi/guard.hpp", "build.rs"]) {
+    for file in SHIM.iter().chain(&["ffi/osd.h", "ffi/guard.hpp", "ffi/table.hpp", "build.rs"]) {
         println!("cargo:rerun-if-changed={file}");
     }
     cc::Build::new().cpp(true).std("c++14").opt_level(2).warnings(true).files(SHIM).compile("catoptric_osd");

@@ -156,11 +156,34 @@ osd_status osd_bfr_create(const osd_mesh *mesh, const double *points, int32_t sm
 void osd_bfr_destroy(osd_bfr *bfr);
 
 /*
+ * Far::LimitStencilTable in double precision: every sample as a weighted sum of control points. Its patches are those of
+ * osd_far_create, refined anew in every call round the faces that are asked for, so memory grows with a call's faces and
+ * with the control mesh. Calls do not change the object: any number of threads may make them.
+ */
+typedef struct osd_stencils osd_stencils;
+osd_status osd_stencils_create(const osd_mesh *mesh, int32_t isolation, osd_stencils **out);
+void osd_stencils_destroy(osd_stencils *stencils);
+/*
+ * As osd_far_evaluate, with the control points (3 * vertices) and, for each sample, the number of control points that
+ * its stencil sums (terms: count). Samples come grouped by ptex face.
+ */
+osd_status osd_stencils_evaluate(const osd_stencils *stencils, const double *points, int32_t count,
+                                 const int32_t *faces, const double *uv, double *jets, double *cells, uint8_t *answers,
+                                 int32_t *terms);
+/*
+ * The stencil of one sample. size: its control points, 0 in a hole; of these up to `capacity` are written. vertices:
+ * capacity; weights: 3 * capacity, those of position, d/du, d/dv; kind: an osd_answer.
+ */
+osd_status osd_stencils_weights(const osd_stencils *stencils, int32_t face, const double *uv, int32_t capacity,
+                                int32_t *size, int32_t *vertices, double *weights, uint8_t *kind);
+
+/*
  * Evaluates `count` samples. faces: ptex faces; uv: 2 * count, in [0,1]; jets: 9 * count, position, d/du, d/dv by the
  * parameters of the ptex face; cells: count, the side of the patch that answered in those parameters (1 for Bfr, whose
- * exact surfaces are whole faces); answers: count, an osd_answer each. Neither function is thread-safe on one object.
+ * exact surfaces are whole faces); answers: count, an osd_answer each. osd_far_evaluate does not change its object: any
+ * number of threads may call it. Bfr's cache does change: one thread at a time.
  */
-osd_status osd_far_evaluate(osd_far *far, int32_t count, const int32_t *faces, const double *uv, double *jets,
+osd_status osd_far_evaluate(const osd_far *far, int32_t count, const int32_t *faces, const double *uv, double *jets,
                             double *cells, uint8_t *answers);
 osd_status osd_bfr_evaluate(osd_bfr *bfr, int32_t count, const int32_t *faces, const double *uv, double *jets,
                             double *cells, uint8_t *answers);

@@ -1,14 +1,13 @@
 // The reference evaluators: osd_far_* (Far::PatchTable) and osd_bfr_* (Bfr surfaces).
 #include "guard.hpp"
+#include "table.hpp"
 
 #include <opensubdiv/bfr/refinerSurfaceFactory.h>
 #include <opensubdiv/bfr/surface.h>
 #include <opensubdiv/far/patchMap.h>
 #include <opensubdiv/far/patchTable.h>
-#include <opensubdiv/far/patchTableFactory.h>
 
 #include <algorithm>
-#include <cfloat>
 
 using namespace catoptric;
 namespace Bfr = OpenSubdiv::Bfr;
@@ -58,9 +57,6 @@ struct osd_bfr {
     std::vector<double> patch_points;
 };
 
-// Parameters below the normal range count as 0: end caps divide by them, which overflows.
-static double flushed(double parameter) { return parameter < DBL_MIN ? 0.0 : parameter; }
-
 extern "C" {
 
 osd_status osd_far_create(const osd_mesh *mesh, const double *points, int32_t isolation, int32_t secondary,
@@ -70,13 +66,8 @@ osd_status osd_far_create(const osd_mesh *mesh, const double *points, int32_t is
         require(secondary >= 1 && secondary <= isolation, "secondary isolation must be 1 to that of sharp features");
         auto refiner = make_refiner(*mesh);
 
-        Far::PatchTableFactory::Options options(isolation);
-        options.SetPatchPrecision<double>();
+        Far::PatchTableFactory::Options options = exact_options(isolation);
         options.SetEndCapType(to_far(end_cap));
-        options.useInfSharpPatch = true;                  // the default smooths creases
-        options.generateLegacySharpCornerPatches = false; // the default moves smooth corners
-        options.useSingleCreasePatch = false;             // drawing only
-        options.generateVaryingTables = false;
         Far::TopologyRefiner::AdaptiveOptions refinement = options.GetRefineAdaptiveOptions();
         refinement.SetSecondaryLevel(secondary);
         refiner->RefineAdaptive(refinement);
@@ -138,10 +129,11 @@ osd_status osd_far_patches(const osd_far *far, osd_far_patch *patches, double *p
     });
 }
 
-osd_status osd_far_evaluate(osd_far *far, int32_t count, const int32_t *faces, const double *uv, double *jets,
+osd_status osd_far_evaluate(const osd_far *far, int32_t count, const int32_t *faces, const double *uv, double *jets,
                             double *cells, uint8_t *answers) {
     return guard([&] {
-        std::vector<double> p, du, dv;
+        // The most points that a patch has: 20 of a Gregory patch.
+        double p[20], du[20], dv[20];
         for (int32_t i = 0; i < count; ++i, jets += 9) {
             std::fill_n(jets, 9, 0.0);
             cells[i] = 1.0;
@@ -152,11 +144,10 @@ osd_status osd_far_evaluate(osd_far *far, int32_t count, const int32_t *faces, c
                 continue;
             }
             auto const vertices = far->table->GetPatchVertices(*handle);
-            p.resize(vertices.size()), du.resize(vertices.size()), dv.resize(vertices.size());
-            far->table->EvaluateBasis<double>(*handle, u, v, p.data(), du.data(), dv.data());
-            // The parameters of an n-gon's quadrants count from the n-gon: the derivatives come back doubled.
+            require(vertices.size() <= 20, "a patch of more than 20 points");
+            far->table->EvaluateBasis<double>(*handle, u, v, p, du, dv);
             Far::PatchParam const param = far->table->GetPatchParam(*handle);
-            double const scale = param.NonQuadRoot() ? 0.5 : 1.0;
+            double const scale = derivative_scale(param);
             cells[i] = param.GetParamFraction();
             for (int j = 0; j < vertices.size(); ++j)
                 for (int k = 0; k < 3; ++k) {

@@ -7,7 +7,7 @@ mod common;
 #[path = "common/random_mesh.rs"]
 mod random_mesh;
 
-use catoptric::osd::{Answer, Far, MAX_ISOLATION, Reference};
+use catoptric::osd::{Answer, Far, MAX_ISOLATION};
 use catoptric::patch::PatchKind;
 use catoptric::stam::LimitSurface;
 use common::{Shared, angle_deg, shared_points};
@@ -82,7 +82,7 @@ fn opensubdiv_agrees_at_dyadic_points() {
     let figures = run(|seed, figures| {
         let mesh = random_mesh::mesh(seed);
         let surface = LimitSurface::new(&mesh).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
-        let mut far = Far::new(&mesh, MAX_ISOLATION).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
+        let far = Far::new(&mesh, MAX_ISOLATION).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
         // The quadrants of an n-gon are quads of level 1: isolation 10 splits them nine times.
         let [quad, quadrant] = [MAX_ISOLATION, MAX_ISOLATION - 1].map(parameters);
         let grids = mesh

@@ -56,15 +56,36 @@ pub(super) struct EvalArgs {
 
 #[derive(Debug, Args)]
 pub(super) struct VerifyArgs {
-    /// Control meshes (.obj)
+    /// Control meshes: files, folders (with those in them), and patterns such as 'meshes/*.obj'
     #[arg(value_name = "MESH")]
     pub meshes: Vec<PathBuf>,
-    /// Write the report as JSON
+    /// Write the report as JSON (docs/verify-report.schema.json)
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
+    /// Write the report as JUnit XML, for CI systems
+    #[arg(long, value_name = "FILE")]
+    pub junit: Option<PathBuf>,
+    /// Fail on what is worse than in this earlier JSON report
+    #[arg(long, value_name = "FILE")]
+    pub baseline: Option<PathBuf>,
+    /// Meshes of folders and patterns that are refused do not fail the run
+    #[arg(long)]
+    pub allow_refused: bool,
     /// Size of the view that the fragment tier checks pixel by pixel
     #[arg(long, value_name = "WxH", default_value = "512x512", value_parser = size)]
     pub size: [u32; 2],
+    /// Show all evaluations of one point of one mesh side by side, with the control points involved
+    #[arg(long, value_name = "FACE,U,V", value_parser = location, conflicts_with_all = ["junit", "baseline"])]
+    pub only: Option<crate::osd::Location>,
+    /// Print every row, also of many meshes
+    #[arg(short, long)]
+    pub verbose: bool,
+    /// Report how long each step took
+    #[arg(long)]
+    pub timings: bool,
+    /// Plant an error in our evaluation, to test that it is caught: point[:PATCH], crease[:N] or swap
+    #[arg(long, value_name = "ERROR", hide = true)]
+    pub plant: Option<crate::verify::Plant>,
 }
 
 #[derive(Debug, Args)]
@@ -88,6 +109,17 @@ pub(super) fn size(text: &str) -> Result<[u32; 2], String> {
     let parse = |side: &str| side.parse().ok().filter(|n| (1..=LARGEST_SIZE).contains(n));
     let sides = text.split_once('x').and_then(|(w, h)| Some([parse(w)?, parse(h)?]));
     sides.ok_or_else(|| format!("give WIDTHxHEIGHT, each 1 to {LARGEST_SIZE}"))
+}
+
+/// Parses `FACE,U,V`: a ptex face and parameters in 0 to 1.
+fn location(text: &str) -> Result<crate::osd::Location, String> {
+    let parts: Vec<&str> = text.split(',').map(str::trim).collect();
+    let parse = |part: &str| part.parse().ok().filter(|x| (0.0..=1.0).contains(x));
+    let parsed = match parts[..] {
+        [face, u, v] => face.parse().ok().zip(parse(u)).zip(parse(v)).map(|((face, u), v)| (face, u, v)),
+        _ => None,
+    };
+    parsed.ok_or_else(|| "give FACE,U,V: a ptex face, and u and v in 0 to 1".to_owned())
 }
 
 /// Parses `X,Y,Z`.

@@ -4,7 +4,7 @@ use super::args::{Backend, EvalArgs};
 use super::{Failure, load, write_out};
 use crate::gpu::{self, Gpu};
 use crate::mesh::SubdivMesh;
-use crate::osd::{Answer, Far, MAX_ISOLATION, Reference};
+use crate::osd::{Answer, Far, MAX_ISOLATION};
 use crate::output::check_writable;
 use crate::stam::{Jet, LimitSurface};
 use rayon::prelude::*;
@@ -109,7 +109,7 @@ fn on_gpu(surface: &LimitSurface, samples: &[Sample]) -> Result<Vec<Option<Jet>>
 fn by_opensubdiv(mesh: &SubdivMesh, samples: &[Sample]) -> Result<Vec<Option<Jet>>, Failure> {
     let samples: Vec<_> = samples.iter().map(|s| (s.face, s.u, s.v)).collect();
     let answers =
-        Far::new(mesh, MAX_ISOLATION).and_then(|mut far| far.evaluate(&samples)).map_err(|e| Failure::of(mesh, e))?;
+        Far::new(mesh, MAX_ISOLATION).and_then(|far| far.evaluate(&samples)).map_err(|e| Failure::of(mesh, e))?;
     let jet = |r: &crate::osd::ReferenceJet| Jet {
         position: r.position,
         du: r.du,

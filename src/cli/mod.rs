@@ -155,6 +155,11 @@ impl Steps {
         }
         self.bar.inc(1);
     }
+
+    /// Runs what writes to the terminal, with the bar out of the way.
+    fn aside<R>(&self, write: impl FnOnce() -> R) -> R {
+        self.bar.suspend(write)
+    }
 }
 
 impl Drop for Steps {

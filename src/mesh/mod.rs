@@ -23,6 +23,9 @@ pub use error::{MeshError, Place, Spot};
 pub use sample::sample;
 pub use validate::{MAX_COORDINATE, MAX_VALENCE};
 
+/// Extensions of the files that [`read`] reads, in lower case.
+pub const EXTENSIONS: [&str; 1] = ["obj"];
+
 /// Reads and validates a mesh file. The extension says the format; so far that is `.obj`.
 ///
 /// The mesh is named after the file's stem. Vertices and faces keep the order of the file, whatever groups or objects

@@ -1,5 +1,5 @@
-//! OpenSubdiv 3.5.0 through `ffi/osd.h`: topology refinement ([`Refiner`]) and the regression references ([`Far`],
-//! [`Bfr`]). The only `unsafe` of the crate lives here.
+//! OpenSubdiv 3.5.0 through `ffi/osd.h`: topology refinement ([`Refiner`]) and the regression references
+//! ([`LimitStencils`], [`Far`], [`Bfr`]). The only `unsafe` of the crate lives here.
 //!
 //! Each C++ object has one owner that releases it once. OpenSubdiv validates almost nothing, so every mesh passes
 //! [`SubdivMesh::validate`](crate::mesh::SubdivMesh::validate) on its way in.
@@ -9,10 +9,12 @@ mod patches;
 mod raw;
 mod reference;
 mod refiner;
+mod stencils;
 
 pub use patches::{EndCap, FarNet, FarPatch, Isolation};
-pub use reference::{Answer, Bfr, Far, Reference, ReferenceJet};
+pub use reference::{Answer, Bfr, Far, Location, Reference, ReferenceJet};
 pub use refiner::{Level, Refiner, Rule};
+pub use stencils::{LimitStencils, Stencil};
 
 use crate::mesh::{Boundary, Creasing, MeshError, SubdivMesh};
 use std::ffi::CStr;

@@ -3,6 +3,7 @@
 use super::{Descriptor, EndCap, Error, FarPatch, Isolation, check, int, raw};
 use crate::mesh::SubdivMesh;
 use glam::DVec3;
+use rayon::prelude::*;
 use std::ptr::NonNull;
 
 /// What answered a reference sample.
@@ -33,6 +34,9 @@ pub struct ReferenceJet {
     /// Side of the patch that answered, in parameters of the ptex face: OpenSubdiv differentiates in units of it, so
     /// rounding of its points shows 1/cell times as large in the derivatives.
     pub cell: f64,
+    /// Control points that the answer is one sum of, each adding its rounding: those of a limit stencil. 0 where it was
+    /// refined level by level.
+    pub terms: u32,
 }
 
 /// An evaluator that we did not write.
@@ -41,20 +45,24 @@ pub trait Reference {
     ///
     /// # Errors
     /// A face is out of range, or OpenSubdiv reports an error.
-    fn evaluate(&mut self, samples: &[(u32, f64, f64)]) -> Result<Vec<ReferenceJet>, Error>;
+    fn evaluate(&mut self, samples: &[Location]) -> Result<Vec<ReferenceJet>, Error>;
 }
 
+/// A sample: ptex face, u and v.
+pub type Location = (u32, f64, f64);
+
 /// Samples in the layout of the header, and room for the answers.
-struct Batch {
-    faces: Vec<i32>,
-    uv: Vec<f64>,
+pub(super) struct Batch {
+    pub faces: Vec<i32>,
+    pub uv: Vec<f64>,
     jets: Vec<[DVec3; 3]>,
-    cells: Vec<f64>,
-    answers: Vec<u8>,
+    pub cells: Vec<f64>,
+    pub answers: Vec<u8>,
+    pub terms: Vec<i32>,
 }
 
 impl Batch {
-    fn new(samples: &[(u32, f64, f64)]) -> Self {
+    pub fn new(samples: &[Location]) -> Self {
         Self {
             // A face that 32 bits do not hold does not exist: nor does the largest that they do.
             faces: samples.iter().map(|s| i32::try_from(s.0).unwrap_or(i32::MAX)).collect(),
@@ -62,59 +70,57 @@ impl Batch {
             jets: vec![[DVec3::ZERO; 3]; samples.len()],
             cells: vec![1.0; samples.len()],
             answers: vec![0; samples.len()],
+            terms: vec![0; samples.len()],
         }
     }
 
-    fn run(
+    /// Calls an evaluator of the header with the number of samples, these arrays, and one for the jets.
+    pub fn run(
         mut self,
-        call: impl FnOnce(i32, *const i32, *const f64, *mut f64, *mut f64, *mut u8) -> raw::osd_status,
+        call: impl FnOnce(i32, &mut Self, *mut f64) -> raw::osd_status,
     ) -> Result<Vec<ReferenceJet>, Error> {
-        let jets: &mut [f64] = bytemuck::cast_slice_mut(&mut self.jets);
-        check(call(
-            int(self.faces.len(), "number of samples")?,
-            self.faces.as_ptr(),
-            self.uv.as_ptr(),
-            jets.as_mut_ptr(),
-            self.cells.as_mut_ptr(),
-            self.answers.as_mut_ptr(),
-        ))?;
-        Ok(self
-            .jets
-            .iter()
-            .zip(&self.cells)
-            .zip(&self.answers)
-            .map(|((&[position, du, dv], &cell), &answer)| ReferenceJet {
-                answer: match raw::osd_answer::from(answer) {
-                    raw::OSD_ANSWER_REGULAR => Answer::Regular,
-                    raw::OSD_ANSWER_END_CAP => Answer::EndCap,
-                    raw::OSD_ANSWER_NOT_ASKED => Answer::NotAsked,
-                    _ => Answer::None,
-                },
-                position,
-                du,
-                dv,
-                cell,
-            })
-            .collect())
+        let mut jets = std::mem::take(&mut self.jets);
+        let count = int(self.faces.len(), "number of samples")?;
+        check(call(count, &mut self, bytemuck::cast_slice_mut::<_, f64>(&mut jets).as_mut_ptr()))?;
+        let jet = |(i, [position, du, dv]): (usize, [DVec3; 3])| ReferenceJet {
+            answer: answer(self.answers[i]),
+            position,
+            du,
+            dv,
+            cell: self.cells[i],
+            terms: self.terms[i] as u32,
+        };
+        Ok(jets.into_iter().enumerate().map(jet).collect())
     }
 }
+
+pub(super) fn answer(raw: u8) -> Answer {
+    match raw::osd_answer::from(raw) {
+        raw::OSD_ANSWER_REGULAR => Answer::Regular,
+        raw::OSD_ANSWER_END_CAP => Answer::EndCap,
+        raw::OSD_ANSWER_NOT_ASKED => Answer::NotAsked,
+        _ => Answer::None,
+    }
+}
+
+/// Samples that one call evaluates: a fraction of a millisecond of work.
+const CHUNK: usize = 1024;
 
 /// Owner of a `Far::PatchTable` in double precision with Gregory end caps, and of its points.
 ///
 /// Exact on regular patches, and at dyadic points i/2^k, k <= isolation; end caps approximate elsewhere. The options
 /// are not the defaults, which are drawing approximations: infinitely sharp patches on, legacy sharp corners and single-crease patches off.
 ///
-/// Evaluation borrows the table mutably: one evaluation at a time.
-/// ```compile_fail
-/// fn shared<T: Sync>() {}
-/// shared::<catoptric::osd::Far>();
-/// ```
-/// ```compile_fail
-/// use catoptric::osd::{Far, Reference};
-/// fn twice(far: &Far) { far.evaluate(&[]).unwrap(); }
-/// ```
+/// Any number of threads may evaluate at a time.
 #[derive(Debug)]
 pub struct Far(NonNull<raw::osd_far>);
+
+// SAFETY: nothing in the object belongs to a thread, and osd_far_evaluate and osd_far_measure only read it: they call const
+// members of `Far::PatchTable` and `Far::PatchMap`, which have no mutable fields, and write to the caller's arrays and their
+// own stack. Errors are thread-local.
+unsafe impl Send for Far {}
+// SAFETY: as above.
+unsafe impl Sync for Far {}
 
 impl Drop for Far {
     fn drop(&mut self) {
@@ -170,6 +176,25 @@ impl Far {
             .collect())
     }
 
+    /// Evaluates samples (ptex face, u, v), u and v 0 to 1, on all threads. A face that does not exist has no answer.
+    ///
+    /// # Errors
+    /// OpenSubdiv reports an error.
+    pub fn evaluate(&self, samples: &[Location]) -> Result<Vec<ReferenceJet>, Error> {
+        let chunk = |samples: &[Location]| {
+            Batch::new(samples).run(|count, batch, jets| {
+                let Batch { faces, uv, cells, answers, .. } = batch;
+                let (cells, answers) = (cells.as_mut_ptr(), answers.as_mut_ptr());
+                // SAFETY: the handle is live, calls may overlap, and the arrays are sized by `count`.
+                unsafe {
+                    raw::osd_far_evaluate(self.0.as_ptr(), count, faces.as_ptr(), uv.as_ptr(), jets, cells, answers)
+                }
+            })
+        };
+        let chunks: Vec<_> = samples.par_chunks(CHUNK).map(chunk).collect::<Result<_, _>>()?;
+        Ok(chunks.concat())
+    }
+
     fn sizes(&self) -> raw::osd_far_sizes {
         let mut sizes = raw::osd_far_sizes::default();
         // SAFETY: the handle is live and the output is a local.
@@ -186,15 +211,6 @@ impl Far {
     /// refined ones and those of end caps, in f64 (24 each). Without the stencils that make the points.
     pub fn bytes(&self) -> u64 {
         self.sizes().bytes as u64
-    }
-}
-
-impl Reference for Far {
-    fn evaluate(&mut self, samples: &[(u32, f64, f64)]) -> Result<Vec<ReferenceJet>, Error> {
-        // SAFETY: the handle is live and borrowed mutably; the arrays are sized by `count`.
-        Batch::new(samples).run(|count, faces, uv, jets, cells, answers| unsafe {
-            raw::osd_far_evaluate(self.0.as_ptr(), count, faces, uv, jets, cells, answers)
-        })
     }
 }
 
@@ -240,10 +256,12 @@ impl Bfr {
 }
 
 impl Reference for Bfr {
-    fn evaluate(&mut self, samples: &[(u32, f64, f64)]) -> Result<Vec<ReferenceJet>, Error> {
-        // SAFETY: the handle is live and borrowed mutably; the arrays are sized by `count`.
-        Batch::new(samples).run(|count, faces, uv, jets, cells, answers| unsafe {
-            raw::osd_bfr_evaluate(self.0.as_ptr(), count, faces, uv, jets, cells, answers)
+    fn evaluate(&mut self, samples: &[Location]) -> Result<Vec<ReferenceJet>, Error> {
+        Batch::new(samples).run(|count, batch, jets| {
+            let Batch { faces, uv, cells, answers, .. } = batch;
+            let (cells, answers) = (cells.as_mut_ptr(), answers.as_mut_ptr());
+            // SAFETY: the handle is live and borrowed mutably; the arrays are sized by `count`.
+            unsafe { raw::osd_bfr_evaluate(self.0.as_ptr(), count, faces.as_ptr(), uv.as_ptr(), jets, cells, answers) }
         })
     }
 }

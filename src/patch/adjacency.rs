@@ -67,7 +67,7 @@ pub(super) struct PtexEdge {
 }
 
 /// The four edges of every ptex face, and the level at which the ptex face is a quad.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct PtexEdges {
     edges: Vec<[PtexEdge; 4]>,
     levels: Vec<u8>,

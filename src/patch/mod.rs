@@ -259,7 +259,7 @@ struct Support {
 }
 
 /// The patches of a mesh and the quadtrees that find them. Topology only: control points may move without it changing.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Patches {
     patches: Vec<Patch>,
     supports: Vec<Support>,
@@ -312,6 +312,12 @@ impl Patches {
         let Support { first, class, .. } = self.supports[patch];
         let length = class.map_or(16, |class| self.classes[class as usize].support());
         &self.vertices[first as usize..first as usize + length]
+    }
+
+    /// Lets another vertex be point `point` of a patch's support, and of those that share it (strips).
+    pub(crate) fn set_support(&mut self, patch: usize, point: usize, vertex: u32) {
+        let first = self.supports[patch].first as usize;
+        self.vertices[first + point] = vertex;
     }
 
     /// How the rows (v = const) of a strip's net follow from the four rows of its support; `None` for other patches.

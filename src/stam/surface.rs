@@ -110,6 +110,26 @@ impl LimitSurface {
         self.patches()[patch].kind
     }
 
+    /// Refined vertices that control a patch, [`PHANTOM`] where there is none.
+    pub(crate) fn support(&self, patch: usize) -> &[u32] {
+        self.patches.support(patch)
+    }
+
+    /// The same patches over other refined points, those of all levels.
+    pub(crate) fn with_refined(&self, points: Vec<DVec3>) -> Self {
+        Self { points: Arc::new(points), ..self.clone() }
+    }
+
+    /// A surface with an error: point `point` of the support of a patch is moved, for this patch alone (strips along a
+    /// crease share their support). `None` if there is no such point.
+    pub(crate) fn with_point_moved(&self, patch: usize, point: usize, by: DVec3) -> Option<Self> {
+        let vertex = *self.patches.support(patch).get(point).filter(|&&vertex| vertex != PHANTOM)?;
+        let (mut patches, mut points) = ((*self.patches).clone(), (*self.points).clone());
+        patches.set_support(patch, point, points.len() as u32);
+        points.push(points[vertex as usize] + by);
+        Some(Self { patches: Arc::new(patches), points: Arc::new(points), ..self.clone() })
+    }
+
     /// The 16 points of a regular patch, phantom points filled in.
     pub(crate) fn regular_net(&self, patch: usize) -> [DVec3; 16] {
         let support = self.patches.support(patch);

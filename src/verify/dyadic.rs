@@ -1,25 +1,25 @@
 //! Tier `dyadic`: points i/2^k, where OpenSubdiv's adaptive patches are exact whatever their end caps.
 
-use super::bin::{Bins, Check, Key, Normal, Sample};
+use super::bin::Bins;
+use super::difference::{Check, Normal, Sample};
+use super::key::{Against, Key, TierName};
+use super::references::{References, thinned};
 use super::{Subject, VerifyError};
-use crate::osd::{Answer, Far, MAX_ISOLATION, Reference};
+use crate::osd::{Answer, Location, MAX_ISOLATION, ReferenceJet};
 use crate::patch::PatchKind;
+use crate::stam::Jet;
 
 /// Ten levels of refinement, each summed anew on both sides: ten times tier `vertex`. Rounding of world coordinates comes
 /// on top ([`Rounding`](super::rounding::Rounding)).
-const POSITION: f64 = 1e-11;
-const NORMAL_DEG: f64 = 1e-6;
-const DERIVATIVE: f64 = 1e-10;
+pub(super) const POSITION: f64 = 1e-11;
+pub(super) const NORMAL_DEG: f64 = 1e-6;
+pub(super) const DERIVATIVE: f64 = 1e-10;
 
 /// What a position may be off where the end cap is known to be wrong. Not derived: it tells gross errors of ours from
 /// OpenSubdiv's, of which the largest found is 2.2e-5.
 const KNOWN_WRONG: f64 = 1e-2;
 
 const BUDGET: usize = 400_000;
-
-pub(super) fn reference(subject: &Subject<'_>) -> Result<Far, VerifyError> {
-    Ok(Far::new(subject.mesh, MAX_ISOLATION)?)
-}
 
 /// A 4 x 4 grid, and towards each corner the points at 2^-k, k up to `depth`, on both edges and the diagonal.
 fn parameters(depth: u32) -> Vec<[f64; 2]> {
@@ -33,43 +33,54 @@ fn parameters(depth: u32) -> Vec<[f64; 2]> {
     out
 }
 
-pub(super) fn run(subject: &Subject<'_>, far: &mut Far, bins: &mut Bins) -> Result<(), VerifyError> {
+pub(super) fn run(subject: &Subject<'_>, references: &References, bins: &mut Bins) -> Result<(), VerifyError> {
     // The quadrants of an n-gon are quads of level 1 already: isolation 10 splits them 9 times.
     let [quad, quadrant] = [parameters(MAX_ISOLATION), parameters(MAX_ISOLATION - 1)];
     let sizes = subject.mesh.face_sizes.iter();
     let grids: Vec<_> = sizes.flat_map(|&n| if n == 4 { vec![&quad] } else { vec![&quadrant; n as usize] }).collect();
     let faces = subject.faces(quad.len(), BUDGET);
-    let samples: Vec<_> = faces.flat_map(|face| grids[face as usize].iter().map(move |&[u, v]| (face, u, v))).collect();
-    let references = far.evaluate(&samples)?;
-    for (&(face, u, v), reference) in samples.iter().zip(&references) {
-        let sample = Sample { face, u, v };
-        let answered = reference.answer != Answer::None;
-        let mut key = Key { tier: "dyadic", reference: "Far level 10", kind: None, known_wrong: None };
-        let (patch, jet) = match subject.evaluate(sample) {
-            Some(ours) if answered => ours,
-            None if !answered => continue,
-            ours => {
-                // One side sees a hole.
-                key.kind = ours.map(|(patch, _)| subject.surface.kind(patch));
-                bins.mismatch(key, sample);
-                continue;
-            }
+    let samples: Vec<Location> =
+        faces.flat_map(|face| grids[face as usize].iter().map(move |&[u, v]| (face, u, v))).collect();
+    let answers = references.far.evaluate(&samples)?;
+    compare(subject, Against::Far, &samples, &subject.evaluate_all(&samples), &answers, bins);
+    let samples = thinned(&samples);
+    let answers = references.stencils.evaluate(&samples)?;
+    compare(subject, Against::LimitStencils, &samples, &subject.evaluate_all(&samples), &answers, bins);
+    Ok(())
+}
+
+fn compare(
+    subject: &Subject<'_>,
+    against: Against,
+    samples: &[Location],
+    ours: &[Option<(usize, Jet)>],
+    answers: &[ReferenceJet],
+    bins: &mut Bins,
+) {
+    bins.fill(samples.len(), |bins, i| {
+        let ((face, u, v), reference) = (samples[i], &answers[i]);
+        let patch = ours[i].map(|(patch, _)| patch);
+        let kind = patch.and_then(|patch| subject.kind(patch));
+        let mut key = Key::new(TierName::Dyadic, against, kind);
+        let place = subject.place(Sample { face, u, v }, patch);
+        let (patch, jet) = match ours[i] {
+            Some(ours) if reference.answer != Answer::None => ours,
+            None if reference.answer == Answer::None => return,
+            // One side sees a hole.
+            _ => return bins.mismatch(key, place),
         };
-        let kind = subject.surface.kind(patch);
-        key.kind = Some(kind);
         // An end cap meets the limit at its corners, but for the normal at an extraordinary vertex (3.5.0: off by up to
         // 1e-2 degrees at isolation 10, converging to ours), and for darts altogether.
         let exact = reference.answer == Answer::Regular;
         let mut difference = subject.difference(patch, &jet, reference, [POSITION, NORMAL_DEG, DERIVATIVE]);
-        if kind == PatchKind::Dart && !exact {
+        if kind == Some(PatchKind::Dart) && !exact {
             key.known_wrong = Some("end cap at infinitely sharp darts");
             difference.position = Check { allowed: KNOWN_WRONG, ..difference.position };
         }
         if !exact {
             difference.normal = Normal::Unknown;
         }
-        difference.derivative = difference.derivative.filter(|_| exact && kind == PatchKind::Regular);
-        bins.add(key, sample, difference);
-    }
-    Ok(())
+        difference.derivative = difference.derivative.filter(|_| exact && kind == Some(PatchKind::Regular));
+        bins.add(key, place, difference);
+    });
 }

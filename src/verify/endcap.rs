@@ -1,6 +1,8 @@
 //! Tier `endcap`: how far OpenSubdiv's default end caps are from the exact limit. It reports, and never fails.
 
-use super::bin::{Bins, Check, Difference, Key, Normal, Sample};
+use super::bin::Bins;
+use super::difference::{Check, Difference, Normal, Sample};
+use super::key::{Against, Key, TierName};
 use super::regular::scattered;
 use super::{NORMAL_LIMIT, Subject, VerifyError, rounding};
 use crate::osd::{Answer, Bfr, Reference};
@@ -12,9 +14,10 @@ pub(super) fn run(subject: &Subject<'_>, bins: &mut Bins) -> Result<(), VerifyEr
     let samples = scattered(subject, PER_FACE, BUDGET);
     let answers = Bfr::new(subject.mesh, Bfr::DEFAULT_LEVELS)?.evaluate(&samples)?;
     bins.not_asked += answers.iter().filter(|a| a.answer == Answer::NotAsked).count();
-    for (&(face, u, v), answer) in samples.iter().zip(&answers).filter(|(_, a)| a.answer == Answer::EndCap) {
+    bins.fill(samples.len(), |bins, i| {
+        let (answer, (face, u, v)) = (&answers[i], samples[i]);
         let sample = Sample { face, u, v };
-        let Some((patch, jet)) = subject.evaluate(sample) else { continue };
+        let (Answer::EndCap, Some((patch, jet))) = (answer.answer, subject.evaluate(sample)) else { return };
         let error = jet.position.distance(answer.position) / subject.rounding.unit;
         let turn = rounding::turn_deg(answer.du, answer.dv, subject.rounding.derivative(answer.cell));
         let reference = answer.du.cross(answer.dv);
@@ -23,8 +26,8 @@ pub(super) fn run(subject: &Subject<'_>, bins: &mut Bins) -> Result<(), VerifyEr
             normal: Normal::judge(jet.normal, reference, turn, NORMAL_LIMIT, f64::INFINITY),
             derivative: None,
         };
-        let kind = Some(subject.surface.kind(patch));
-        bins.add(Key { tier: "endcap", reference: "Bfr 2/6", kind, known_wrong: None }, sample, difference);
-    }
+        let key = Key::new(TierName::EndCap, Against::BfrEndCaps, subject.kind(patch));
+        bins.add(key, subject.place(sample, Some(patch)), difference);
+    });
     Ok(())
 }

@@ -1,11 +1,14 @@
 //! Tier `fragment`: every pixel of a rendered view, against the f64 limit at the same (patch, u, v) and against
 //! OpenSubdiv at the same (face, u, v); and the shader's evaluation on every patch, seen or not, against f64.
 
-use super::bin::{Bins, CAP, Check, Difference, Key, Normal, Sample};
+use super::bin::{Bins, CAP};
+use super::clock::Clock;
+use super::difference::{Check, Difference, Normal, Sample};
+use super::key::{Against, Key, TierName};
 use super::{Subject, VerifyError, regular, rounding};
 use crate::field::{Camera, DEFAULT_FOV, Scout};
 use crate::gpu::{self, Gpu, NO_PATCH, SurfaceImage, Tables, View};
-use crate::osd::{Answer, Far, Reference};
+use crate::osd::{Answer, Far, Location, ReferenceJet};
 use crate::stam::Jet;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -23,32 +26,36 @@ const DERIVATIVE: f64 = 20.0 * 3.0 / 16_777_216.0;
 const BUDGET: usize = 200_000;
 const PER_PATCH: usize = 8;
 
+/// Pixels that are compared with OpenSubdiv at a time.
+const PORTION: usize = 1 << 20;
+
 pub(super) fn run(
     subject: &Subject<'_>,
-    far: &mut Far,
+    far: &Far,
     gpu: &Gpu,
     size: [u32; 2],
+    clock: &mut Clock,
     bins: &mut Bins,
 ) -> Result<(), VerifyError> {
-    let tables = gpu.upload(subject.surface)?;
-    let largest = all_patches(subject, gpu, &tables, bins)?;
+    let tables = clock.time("fragment: tables", || gpu.upload(subject.surface))?;
+    let largest = clock.time("fragment: all patches", || all_patches(subject, gpu, &tables, bins))?;
     let Some(scout) = Scout::new(subject.surface) else { return Ok(()) };
-    let look = |camera: Camera| {
+    let look = |camera: Camera, clock: &mut Clock| {
         let light = scout.light(&camera);
-        gpu.inspect(&tables, &View::new(camera, light))
+        clock.time("fragment: picture", || gpu.inspect(&tables, &View::new(camera, light)))
     };
     let covered = |image: &SurfaceImage| image.patch.iter().any(|&patch| patch != NO_PATCH);
-    let image = look(scout.camera(size, DVec3::Z))?;
+    let image = look(scout.camera(size, DVec3::Z), clock)?;
     if covered(&image) {
-        return pixels(subject, far, &image, bins);
+        return pixels(subject, far, &image, clock, bins);
     }
     // A surface too thin for the pixels' centres is seen from near; one without area not at all.
     let Some(jet) = largest else { return Ok(()) };
-    let image = look(close_up(&jet, size))?;
+    let image = look(close_up(&jet, size), clock)?;
     if !covered(&image) {
-        bins.nothing(Key { tier: "fragment", reference: "f64", kind: None, known_wrong: None });
+        bins.nothing(Key::new(TierName::Fragment, Against::F64, None));
     }
-    pixels(subject, far, &image, bins)
+    pixels(subject, far, &image, clock, bins)
 }
 
 /// A camera that looks at a square round a point, as wide as a quarter of its cell is in the direction in which it is thin.
@@ -81,7 +88,7 @@ fn all_patches(subject: &Subject<'_>, gpu: &Gpu, tables: &Tables, bins: &mut Bin
         .flat_map(|patch| (0..each).map(move |i| (patch, (patch + i) % PER_PATCH)))
         .map(|(patch, i)| gpu::Sample { patch: patch as u32, uv: place(patch, i) })
         .collect();
-    let exact: Vec<Jet> = samples.par_iter().map(|s| surface.evaluate(s.patch as usize, s.uv.map(f64::from))).collect();
+    let exact: Vec<Jet> = samples.par_iter().map(|s| subject.evaluate_patch(s.patch as usize, s.uv)).collect();
     let mut largest: Option<(f64, Jet)> = None;
     for ((sample, jet), reference) in samples.iter().zip(gpu.evaluate(tables, &samples)?).zip(&exact) {
         let ours = (subject.ours)(jet);
@@ -91,9 +98,9 @@ fn all_patches(subject: &Subject<'_>, gpu: &Gpu, tables: &Tables, bins: &mut Bin
         if judged && area.is_finite() && largest.as_ref().is_none_or(|(most, _)| area > *most) {
             largest = Some((area, *reference));
         }
-        let kind = Some(surface.kind(sample.patch as usize));
-        let key = Key { tier: "fragment", reference: "f64 all patches", kind, known_wrong: None };
-        bins.add(key, to_ptex(subject, sample.patch as usize, sample.uv), difference);
+        let patch = sample.patch as usize;
+        let key = Key::new(TierName::Fragment, Against::F64AllPatches, subject.kind(patch));
+        bins.add(key, subject.place(to_ptex(subject, patch, sample.uv), Some(patch)), difference);
     }
     Ok(largest.map(|(_, jet)| jet))
 }
@@ -126,25 +133,46 @@ fn difference(subject: &Subject<'_>, ours: &Jet, reference: &Jet, cell: f64, con
     }
 }
 
-fn pixels(subject: &Subject<'_>, far: &mut Far, image: &SurfaceImage, bins: &mut Bins) -> Result<(), VerifyError> {
-    let surface = subject.surface;
+fn pixels(
+    subject: &Subject<'_>,
+    far: &Far,
+    image: &SurfaceImage,
+    clock: &mut Clock,
+    bins: &mut Bins,
+) -> Result<(), VerifyError> {
     let pixels: Vec<usize> = (0..image.patch.len()).filter(|&i| image.patch[i] != NO_PATCH).collect();
-    let exact: Vec<Jet> =
-        pixels.par_iter().map(|&i| surface.evaluate(image.patch[i] as usize, image.uv[i].map(f64::from))).collect();
-    let samples: Vec<Sample> = pixels.iter().map(|&i| to_ptex(subject, image.patch[i] as usize, image.uv[i])).collect();
-    let answers = far.evaluate(&samples.iter().map(|s| (s.face, s.u, s.v)).collect::<Vec<_>>())?;
-
-    for (((&i, exact), &sample), answer) in pixels.iter().zip(&exact).zip(&samples).zip(&answers) {
+    let patch = |i: usize| image.patch[i] as usize;
+    let place = |i: usize| subject.place(to_ptex(subject, patch(i), image.uv[i]), Some(patch(i)));
+    let key = |i: usize, against| Key::new(TierName::Fragment, against, subject.kind(patch(i)));
+    let ours = |i: usize| {
         let normal = DVec3::from_array(image.normal[i].map(f64::from));
-        let ours = (subject.ours)(Jet { position: image.position[i], normal, ..*exact });
-        let kind = Some(surface.kind(image.patch[i] as usize));
-        let key = |reference| Key { tier: "fragment", reference, kind, known_wrong: None };
-        bins.add(key("f64"), sample, difference(subject, &ours, exact, 1.0, false));
-        if answer.answer == Answer::Regular {
-            let jet =
-                Jet { position: answer.position, du: answer.du, dv: answer.dv, normal: answer.du.cross(answer.dv) };
-            bins.add(key("Far level 10"), sample, difference(subject, &ours, &jet, answer.cell, false));
+        (subject.ours)(Jet { position: image.position[i], normal, du: DVec3::ZERO, dv: DVec3::ZERO })
+    };
+    clock.time("fragment: pixels with f64", || {
+        bins.fill(pixels.len(), |bins, i| {
+            let i = pixels[i];
+            let exact = subject.evaluate_patch(patch(i), image.uv[i]);
+            bins.add(key(i, Against::F64), place(i), difference(subject, &ours(i), &exact, 1.0, false));
+        });
+    });
+    clock.time("fragment: pixels with OpenSubdiv", || {
+        let location = |&i: &usize| {
+            let Sample { face, u, v } = place(i).sample;
+            (face, u, v)
+        };
+        // Portions bound the memory: a picture may have 64 million pixels.
+        for pixels in pixels.chunks(PORTION) {
+            let samples: Vec<Location> = pixels.par_iter().map(location).collect();
+            let answers = far.evaluate(&samples)?;
+            bins.fill(pixels.len(), |bins, k| {
+                let (i, answer) = (pixels[k], &answers[k]);
+                if answer.answer == Answer::Regular {
+                    let ReferenceJet { position, du, dv, cell, .. } = *answer;
+                    let jet = Jet { position, du, dv, normal: du.cross(dv) };
+                    bins.add(key(i, Against::Far), place(i), difference(subject, &ours(i), &jet, cell, false));
+                }
+            });
         }
-    }
-    Ok(())
+        Ok(())
+    })
 }

@@ -4,24 +4,46 @@
 //! Every tier bins its samples by patch kind and names the worst one. Where the reference itself is known to be wrong,
 //! the samples are kept apart with the reason ([`KnownWrong`]) and held to what any wrong reference can be off.
 
+mod baseline;
 mod bin;
+mod clock;
+mod difference;
 mod dyadic;
 mod endcap;
+mod failures;
 mod fragment;
+mod histogram;
+mod junit;
+mod key;
+mod only;
+mod only_text;
+mod plant;
+mod references;
 mod regular;
 mod report;
 mod rounding;
+mod text;
 mod vertex;
 
-pub use bin::Sample;
-pub use report::{KnownWrong, MeshReport, Report, Tier};
+pub use baseline::{Baseline, BaselineError, Comparison, Regression};
+pub use clock::Timing;
+pub use difference::Sample;
+pub use failures::{FailedPatch, Failures};
+pub use histogram::Histogram;
+pub use only::{Evaluation, Influence, Only, OnlyPatch, only};
+pub use plant::Plant;
+pub use report::{Histograms, KnownWrong, MeshReport, Refused, Report, Tier};
 
 use crate::gpu::{Gpu, GpuError};
 use crate::mesh::SubdivMesh;
-use crate::osd::ReferenceJet;
-use crate::patch::PatchError;
+use crate::osd::{Location, ReferenceJet};
+use crate::patch::{PatchError, PatchKind};
 use crate::stam::{Jet, LimitSurface};
-use bin::{Bins, Check, Difference, Normal};
+use bin::Bins;
+use clock::Clock;
+use difference::{Check, Difference, Normal, Place, larger};
+use rayon::prelude::*;
+use references::References;
 use rounding::{LEAST_EXTENT, Rounding};
 
 /// Why a mesh was not verified.
@@ -42,6 +64,24 @@ pub enum VerifyError {
     /// A reference evaluator failed.
     #[error(transparent)]
     Osd(#[from] crate::osd::Error),
+    /// A sample that is asked for lies nowhere.
+    #[error("ptex face {face}, but the mesh has only 0 to {last}; a quad is one ptex face, an n-gon n of them")]
+    NoFace {
+        /// The ptex face.
+        face: u32,
+        /// The last there is.
+        last: usize,
+    },
+    /// The mesh has not what an error was to be planted in.
+    #[error("{what} {index} cannot be planted: the mesh has {count}")]
+    Plant {
+        /// What it lacks.
+        what: &'static str,
+        /// Which was asked for.
+        index: usize,
+        /// How many there are.
+        count: usize,
+    },
     /// The fragment tier needs an adapter.
     #[error(transparent)]
     Gpu(#[from] GpuError),
@@ -52,16 +92,28 @@ pub enum VerifyError {
 const NORMAL_LIMIT: f64 = 1e-3;
 
 /// Everything a tier may look at.
+#[derive(Clone, Copy)]
 struct Subject<'a> {
     mesh: &'a SubdivMesh,
     surface: &'a LimitSurface,
     rounding: Rounding,
     /// Every jet of ours passes through it before it is judged, those of the GPU too. The identity, but for the test
     /// that plants errors.
-    ours: &'a dyn Fn(Jet) -> Jet,
+    ours: &'a (dyn Fn(Jet) -> Jet + Sync),
+    /// [`Plant::Swap`].
+    swapped: bool,
 }
 
-impl Subject<'_> {
+impl<'a> Subject<'a> {
+    fn new(mesh: &'a SubdivMesh, surface: &'a LimitSurface) -> Self {
+        Self { mesh, surface, rounding: Rounding::of(mesh), ours: &|jet| jet, swapped: false }
+    }
+
+    /// Parameters at which we evaluate.
+    fn parameters(&self, [u, v]: [f64; 2]) -> [f64; 2] {
+        if self.swapped { [v, u] } else { [u, v] }
+    }
+
     /// Ptex faces to sample: all of them, or evenly spread ones so that `per_face` samples each stay below `budget`.
     fn faces(&self, per_face: usize, budget: usize) -> impl Iterator<Item = u32> + use<> {
         let count = self.surface.ptex_count();
@@ -71,15 +123,35 @@ impl Subject<'_> {
 
     /// Our patch and jet, derivatives by the ptex parameters; `None` in a hole.
     fn evaluate(&self, at: Sample) -> Option<(usize, Jet)> {
-        let (patch, jet) = self.surface.evaluate_ptex(at.face, [at.u, at.v])?;
+        let (patch, jet) = self.surface.evaluate_ptex(at.face, self.parameters([at.u, at.v]))?;
+        // An error is to be found where it shows.
+        let patch = if self.swapped { self.surface.locate(at.face, [at.u, at.v])?.0 } else { patch };
         Some((patch, (self.ours)(jet)))
+    }
+
+    /// The same for many samples, on all threads.
+    fn evaluate_all(&self, samples: &[Location]) -> Vec<Option<(usize, Jet)>> {
+        samples.par_iter().map(|&(face, u, v)| self.evaluate(Sample { face, u, v })).collect()
+    }
+
+    /// The f64 jet that a shader's is compared with, at parameters of the patch.
+    fn evaluate_patch(&self, patch: usize, uv: [f32; 2]) -> Jet {
+        self.surface.evaluate(patch, self.parameters(uv.map(f64::from)))
+    }
+
+    fn kind(&self, patch: usize) -> Option<PatchKind> {
+        Some(self.surface.kind(patch))
+    }
+
+    fn place(&self, sample: Sample, patch: Option<usize>) -> Place {
+        Place { sample, patch: patch.map(|patch| patch as u32) }
     }
 
     /// Compares our jet with a reference's. The tolerances of position, normal and derivative are what is allowed near
     /// the origin; rounding comes on top, as seen in the smaller of the two patches that answered.
     fn difference(&self, patch: usize, ours: &Jet, theirs: &ReferenceJet, tolerances: [f64; 3]) -> Difference {
         let [position, normal, derivative] = tolerances;
-        let rounding = &self.rounding;
+        let rounding = self.rounding.summing(theirs.terms);
         let [u, v] = self.surface.patches()[patch].scale();
         let derivative_error = rounding.derivative(theirs.cell.min(1.0 / u.max(v)));
         let turn = rounding::turn_deg(theirs.du, theirs.dv, derivative_error);
@@ -91,7 +163,7 @@ impl Subject<'_> {
             },
             normal: Normal::judge(ours.normal, theirs.du.cross(theirs.dv), turn, NORMAL_LIMIT, normal + turn),
             derivative: Some(Check {
-                error: bin::larger(derivatives[0], derivatives[1]) / rounding.unit,
+                error: larger(derivatives[0], derivatives[1]) / rounding.unit,
                 allowed: derivative + derivative_error / rounding.unit,
             }),
         }
@@ -103,7 +175,29 @@ impl Subject<'_> {
 /// # Errors
 /// The mesh is refused, has no surface or is too small to judge; a reference evaluator fails, or the GPU does.
 pub fn verify(mesh: &SubdivMesh, gpu: &Gpu, size: [u32; 2]) -> Result<MeshReport, VerifyError> {
-    let surface = LimitSurface::new(mesh)?;
+    verify_planted(mesh, gpu, size, None)
+}
+
+/// The same with an error planted in our evaluation, which must be caught: a test of the checks.
+///
+/// # Errors
+/// As [`verify`], and if the mesh has not what the error is to be planted in.
+pub fn verify_planted(
+    mesh: &SubdivMesh,
+    gpu: &Gpu,
+    size: [u32; 2],
+    plant: Option<Plant>,
+) -> Result<MeshReport, VerifyError> {
+    let surface = judgeable(mesh, plant)?;
+    let subject = Subject { swapped: plant == Some(Plant::Swap), ..Subject::new(mesh, &surface) };
+    let mut clock = Clock::default();
+    let bins = tiers(&subject, gpu, size, &mut clock)?;
+    Ok(MeshReport::new(mesh, &surface, bins, clock.steps))
+}
+
+/// Our surface of a mesh, if there is something to judge.
+fn judgeable(mesh: &SubdivMesh, plant: Option<Plant>) -> Result<LimitSurface, VerifyError> {
+    let surface = plant.map_or_else(|| Ok(LimitSurface::new(mesh)?), |plant| plant.surface(mesh))?;
     if surface.patches().is_empty() {
         return Err(VerifyError::NoSurface);
     }
@@ -112,19 +206,17 @@ pub fn verify(mesh: &SubdivMesh, gpu: &Gpu, size: [u32; 2]) -> Result<MeshReport
     if extent > 0.0 && extent < LEAST_EXTENT {
         return Err(VerifyError::TooSmall { extent });
     }
-    let subject = Subject { mesh, surface: &surface, rounding: Rounding::of(mesh), ours: &|jet| jet };
-    let bins = tiers(&subject, gpu, size)?;
-    Ok(MeshReport::new(mesh, &surface, bins))
+    Ok(surface)
 }
 
-fn tiers(subject: &Subject<'_>, gpu: &Gpu, size: [u32; 2]) -> Result<Bins, VerifyError> {
+fn tiers(subject: &Subject<'_>, gpu: &Gpu, size: [u32; 2], clock: &mut Clock) -> Result<Bins, VerifyError> {
     let mut bins = Bins::default();
-    vertex::run(subject, &mut bins)?;
-    let mut far = dyadic::reference(subject)?;
-    dyadic::run(subject, &mut far, &mut bins)?;
-    regular::run(subject, &mut far, &mut bins)?;
-    fragment::run(subject, &mut far, gpu, size, &mut bins)?;
-    endcap::run(subject, &mut bins)?;
+    clock.time("vertex", || vertex::run(subject, &mut bins))?;
+    let references = clock.time("references", || References::new(subject))?;
+    clock.time("dyadic", || dyadic::run(subject, &references, &mut bins))?;
+    clock.time("regular", || regular::run(subject, &references, &mut bins))?;
+    fragment::run(subject, &references.far, gpu, size, clock, &mut bins)?;
+    clock.time("endcap", || endcap::run(subject, &mut bins))?;
     Ok(bins)
 }
 
@@ -133,12 +225,18 @@ mod tests {
     use super::*;
     use crate::mesh;
     use glam::DVec3;
+    use std::sync::atomic::{AtomicUsize, Ordering};
 
     /// The tiers that fail when our jets are changed.
-    fn failing(mesh: &SubdivMesh, gpu: &Gpu, ours: &dyn Fn(Jet) -> Jet) -> Vec<&'static str> {
+    fn failing(mesh: &SubdivMesh, gpu: &Gpu, ours: &(dyn Fn(Jet) -> Jet + Sync)) -> Vec<&'static str> {
         let surface = LimitSurface::new(mesh).expect("the mesh is valid");
-        let subject = Subject { mesh, surface: &surface, rounding: Rounding::of(mesh), ours };
-        let report = MeshReport::new(mesh, &surface, tiers(&subject, gpu, [64, 64]).expect("it runs"));
+        let subject = Subject { ours, ..Subject::new(mesh, &surface) };
+        let report = MeshReport::new(
+            mesh,
+            &surface,
+            tiers(&subject, gpu, [64, 64], &mut Clock::default()).expect("it runs"),
+            Vec::new(),
+        );
         let mut tiers: Vec<_> = report.tiers.iter().filter(|row| !row.pass).map(|row| row.tier).collect();
         tiers.dedup();
         assert_eq!(report.pass, tiers.is_empty() && report.reference_known_wrong.iter().all(|known| known.row.pass));
@@ -163,10 +261,10 @@ mod tests {
         for normal in [DVec3::ZERO, DVec3::NAN] {
             assert_eq!(failing(&mesh, &gpu, &|jet| Jet { normal, ..jet }), every);
             // One in a hundred is enough.
-            let count = std::cell::Cell::new(0);
-            let rare = |jet: Jet| {
-                count.set(count.get() + 1);
-                if count.get() % 100 == 0 { Jet { normal, ..jet } } else { jet }
+            let count = AtomicUsize::new(0);
+            let rare = |jet: Jet| match count.fetch_add(1, Ordering::Relaxed) % 100 {
+                0 => Jet { normal, ..jet },
+                _ => jet,
             };
             assert_eq!(failing(&mesh, &gpu, &rare), every);
         }
@@ -181,8 +279,13 @@ mod tests {
         let gpu = Gpu::new().expect("the fragment tier needs an adapter");
         for (theirs, ours) in [(&whole, &holed), (&holed, &whole)] {
             let surface = LimitSurface::new(ours).expect("the mesh is valid");
-            let subject = Subject { mesh: theirs, surface: &surface, rounding: Rounding::of(theirs), ours: &|jet| jet };
-            let report = MeshReport::new(theirs, &surface, tiers(&subject, &gpu, [16, 16]).expect("it runs"));
+            let subject = Subject::new(theirs, &surface);
+            let report = MeshReport::new(
+                theirs,
+                &surface,
+                tiers(&subject, &gpu, [16, 16], &mut Clock::default()).expect("it runs"),
+                Vec::new(),
+            );
             let failed = |tier| report.tiers.iter().filter(|row| row.tier == tier).map(|row| row.failed).sum::<usize>();
             assert!(failed("dyadic") >= 25, "{report}");
             assert!(!report.pass);
@@ -198,8 +301,13 @@ mod tests {
         let surface = LimitSurface::new(&mesh).expect("the mesh is valid");
         let by = DVec3::splat(mesh.diagonal());
         let ours = |jet: Jet| Jet { position: jet.position + by, ..jet };
-        let subject = Subject { mesh: &mesh, surface: &surface, rounding: Rounding::of(&mesh), ours: &ours };
-        let report = MeshReport::new(&mesh, &surface, tiers(&subject, &gpu, [16, 16]).expect("it runs"));
+        let subject = Subject { ours: &ours, ..Subject::new(&mesh, &surface) };
+        let report = MeshReport::new(
+            &mesh,
+            &surface,
+            tiers(&subject, &gpu, [16, 16], &mut Clock::default()).expect("it runs"),
+            Vec::new(),
+        );
         assert!(!report.reference_known_wrong.is_empty());
         assert!(report.reference_known_wrong.iter().all(|known| !known.row.pass));
     }

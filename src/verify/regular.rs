@@ -1,16 +1,24 @@
 //! Tier `regular`: anywhere in OpenSubdiv's regular patches. At isolation 10 they cover all but 2^-20 of the area of an
 //! irregular face, so irregular patches are checked here too, away from dyadic points.
 
-use super::bin::{Bins, Key, Sample};
+use super::bin::Bins;
+use super::difference::Sample;
+use super::key::{Against, Key, TierName};
+use super::references::{References, thinned};
 use super::{Subject, VerifyError};
-use crate::osd::{Answer, Bfr, Far, Reference};
+use crate::osd::{Answer, Bfr, Location, Reference, ReferenceJet};
+use crate::stam::Jet;
 
 /// Position as at vertices; a derivative may lose five times as much, OpenSubdiv's own rule for its regressions.
 /// Rounding of world coordinates comes on top ([`Rounding`](super::rounding::Rounding)).
-const TOLERANCES: [f64; 3] = [1e-12, 1e-6, 5e-12];
+pub(super) const TOLERANCES: [f64; 3] = [1e-12, 1e-6, 5e-12];
 
 const PER_FACE: usize = 32;
 const BUDGET: usize = 200_000;
+
+/// Samples inside every patch, and inside those of which none of these was judged.
+const PER_PATCH: u32 = 3;
+const MORE_PER_PATCH: u32 = 16;
 
 /// Point `i` of a sequence that fills the unit square evenly (Roberts' R2: multiples of the plastic number's powers).
 pub(super) fn scatter(i: u32) -> [f64; 2] {
@@ -18,7 +26,7 @@ pub(super) fn scatter(i: u32) -> [f64; 2] {
 }
 
 /// `per_face` scattered samples on each of the subject's faces, other ones on every face.
-pub(super) fn scattered(subject: &Subject<'_>, per_face: usize, budget: usize) -> Vec<(u32, f64, f64)> {
+pub(super) fn scattered(subject: &Subject<'_>, per_face: usize, budget: usize) -> Vec<Location> {
     let on_face = |face: u32| {
         let first = face.wrapping_mul(per_face as u32) % (1 << 20);
         (first..first + per_face as u32).map(move |i| {
@@ -29,23 +37,81 @@ pub(super) fn scattered(subject: &Subject<'_>, per_face: usize, budget: usize) -
     subject.faces(per_face, budget).flat_map(on_face).collect()
 }
 
-pub(super) fn run(subject: &Subject<'_>, far: &mut Far, bins: &mut Bins) -> Result<(), VerifyError> {
+/// Scattered samples inside each of some patches.
+fn inside(subject: &Subject<'_>, patches: &[usize], each: u32) -> Vec<Location> {
+    let in_patch = |&index: &usize| {
+        let patch = &subject.surface.patches()[index];
+        let first = (index as u32).wrapping_mul(each) % (1 << 20);
+        (first..first + each).map(move |i| {
+            let [u, v] = patch.to_ptex(scatter(i));
+            (patch.ptex, u, v)
+        })
+    };
+    patches.iter().flat_map(in_patch).collect()
+}
+
+pub(super) fn run(subject: &Subject<'_>, references: &References, bins: &mut Bins) -> Result<(), VerifyError> {
     let samples = scattered(subject, PER_FACE, BUDGET);
-    let mut bfr = Bfr::new(subject.mesh, Bfr::DEFAULT_LEVELS)?;
-    let evaluators: [(&str, &mut dyn Reference); 2] = [("Far level 10", far), ("Bfr", &mut bfr)];
-    for (reference, evaluator) in evaluators {
-        let answers = evaluator.evaluate(&samples)?;
-        bins.not_asked += answers.iter().filter(|a| a.answer == Answer::NotAsked).count();
-        for (&(face, u, v), answer) in samples.iter().zip(&answers).filter(|(_, a)| a.answer == Answer::Regular) {
-            let sample = Sample { face, u, v };
-            let ours = subject.evaluate(sample);
-            let kind = ours.map(|(patch, _)| subject.surface.kind(patch));
-            let key = Key { tier: "regular", reference, kind, known_wrong: None };
-            match ours {
-                Some((patch, jet)) => bins.add(key, sample, subject.difference(patch, &jet, answer, TOLERANCES)),
-                None => bins.mismatch(key, sample),
-            }
-        }
+    // Bfr, which has one thread, answers while limit stencils are made.
+    let ask_bfr = || Bfr::new(subject.mesh, Bfr::DEFAULT_LEVELS)?.evaluate(&samples);
+    // A small patch may have been missed: none is, whatever the size of the mesh.
+    let every: Vec<usize> = (0..subject.surface.patches().len()).collect();
+    let mut all = [&*samples, &inside(subject, &every, PER_PATCH)].concat();
+    all.sort_by_key(|sample| sample.0);
+    let kept = thinned(&all);
+    let (bfr, stencils) = rayon::join(ask_bfr, || references.stencils.evaluate(&kept));
+    let answers = bfr?;
+    bins.not_asked += answers.iter().filter(|a| a.answer == Answer::NotAsked).count();
+    compare(subject, Against::Bfr, &samples, &subject.evaluate_all(&samples), &answers, bins);
+    compare(subject, Against::LimitStencils, &kept, &subject.evaluate_all(&kept), &stencils?, bins);
+
+    let mut judged = vec![false; every.len()];
+    ask_far(subject, references, &all, &mut judged, bins)?;
+    // A second round for patches where OpenSubdiv's end cap took the first samples.
+    let missed: Vec<usize> = every.into_iter().filter(|&patch| !judged[patch]).collect();
+    ask_far(subject, references, &inside(subject, &missed, MORE_PER_PATCH), &mut judged, bins)?;
+    bins.unjudged = judged.iter().filter(|judged| !**judged).count();
+    Ok(())
+}
+
+/// Compares with Far, and marks the patches that have a sample that was judged.
+fn ask_far(
+    subject: &Subject<'_>,
+    references: &References,
+    samples: &[Location],
+    judged: &mut [bool],
+    bins: &mut Bins,
+) -> Result<(), VerifyError> {
+    // Portions bound the memory of the answers.
+    for samples in samples.chunks(BUDGET) {
+        let ours = subject.evaluate_all(samples);
+        let answers = references.far.evaluate(samples)?;
+        compare(subject, Against::Far, samples, &ours, &answers, bins);
+        let regular = ours.iter().zip(&answers).filter(|(_, answer)| answer.answer == Answer::Regular);
+        regular.filter_map(|(ours, _)| *ours).for_each(|(patch, _)| judged[patch] = true);
     }
     Ok(())
+}
+
+fn compare(
+    subject: &Subject<'_>,
+    against: Against,
+    samples: &[Location],
+    ours: &[Option<(usize, Jet)>],
+    answers: &[ReferenceJet],
+    bins: &mut Bins,
+) {
+    bins.fill(samples.len(), |bins, i| {
+        let ((face, u, v), answer) = (samples[i], &answers[i]);
+        if answer.answer != Answer::Regular {
+            return;
+        }
+        let patch = ours[i].map(|(patch, _)| patch);
+        let key = Key::new(TierName::Regular, against, patch.and_then(|patch| subject.kind(patch)));
+        let place = subject.place(Sample { face, u, v }, patch);
+        match ours[i] {
+            Some((patch, jet)) => bins.add(key, place, subject.difference(patch, &jet, answer, TOLERANCES)),
+            None => bins.mismatch(key, place),
+        }
+    });
 }

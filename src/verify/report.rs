@@ -1,12 +1,17 @@
-//! The report: what JSON and the terminal show.
+//! The report: what JSON, JUnit and the terminal show.
 
-use super::bin::{Bin, Bins, Key, Sample};
+use super::baseline::{Baseline, Comparison};
+use super::bin::{Bin, Bins, FailedPatches, note};
+use super::clock::Timing;
+use super::difference::Sample;
+use super::failures::{Failures, control_faces};
+use super::histogram::Histogram;
+use super::key::Key;
 use crate::mesh::SubdivMesh;
 use crate::patch::PatchKind;
 use crate::stam::LimitSurface;
 use serde::Serialize;
 use std::collections::BTreeMap;
-use std::fmt;
 
 /// Percentile of the angles that the fragment tier is judged by.
 const PERCENTILE: f64 = 0.9999;
@@ -28,6 +33,8 @@ pub struct Tier {
     /// Samples whose normal was not judged: rounding alone turns the reference's by more than 1e-3 degrees there, in tier
     /// `fragment` by more than 0.1 (folds, vanishing derivatives, coordinates far from the origin).
     pub normals_skipped: usize,
+    /// Where they are; absent where none failed.
+    pub failures: Option<Failures>,
     /// Largest distance / diagonal (of a mesh without extent: / largest coordinate).
     pub position_max: f64,
     /// Largest angle between normals, degrees; absent where the reference has none.
@@ -44,10 +51,25 @@ pub struct Tier {
     pub tolerance_normal_deg: Option<f64>,
     /// Allowed difference of derivatives / diagonal, the most that a sample was allowed.
     pub tolerance_derivative: Option<f64>,
+    /// How the errors are spread.
+    pub histogram: Histograms,
     /// The sample that uses most of its tolerance.
     pub worst: Option<Sample>,
+    /// Error of the worst sample over what it may have; absent where the tier only reports, and where either is no number.
+    pub times_allowed: Option<f64>,
+    /// Command that shows the worst sample of a failed row by itself.
+    pub reproduce: Option<String>,
     /// No sample failed, and there were samples.
     pub pass: bool,
+}
+
+/// How the errors of a row are spread.
+#[derive(Debug, Clone, Serialize)]
+pub struct Histograms {
+    /// Distances / diagonal, one a sample.
+    pub position: Histogram,
+    /// Angles between normals in degrees, one a judged normal.
+    pub normal_deg: Histogram,
 }
 
 /// Samples at which the reference is known to be wrong: only gross errors fail.
@@ -65,6 +87,8 @@ pub struct KnownWrong {
 pub struct MeshReport {
     /// Name of the mesh.
     pub mesh: String,
+    /// File it was read from, as the command line or a folder names it; absent for the sample.
+    pub path: Option<String>,
     /// Control faces.
     pub faces: usize,
     /// Patches by kind.
@@ -72,51 +96,103 @@ pub struct MeshReport {
     /// Samples of the tiers `regular` and `endcap` that Bfr was not asked: 3.5.0 reads out of bounds at interior vertices
     /// of valence 2.
     pub reference_not_asked: usize,
+    /// Patches that no sample inside judged in tier `regular`: OpenSubdiv has an end cap all over them, so they are compared
+    /// at dyadic points alone.
+    pub patches_unjudged: usize,
     /// All tiers pass.
     pub pass: bool,
+    /// Where samples of all tiers failed; absent where none did.
+    pub failures: Option<Failures>,
     /// The rows.
     pub tiers: Vec<Tier>,
     /// Where the reference is wrong.
     pub reference_known_wrong: Vec<KnownWrong>,
+    /// How long each step took; absent unless it is asked for, because it differs from run to run.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub timings: Option<Vec<Timing>>,
+}
+
+/// A mesh of a folder or pattern that was not verified.
+#[derive(Debug, Clone, Serialize)]
+pub struct Refused {
+    /// Its file.
+    pub path: String,
+    /// Why, in one line.
+    pub reason: String,
 }
 
 /// The report of a run over meshes.
 #[derive(Debug, Clone, Serialize)]
 pub struct Report {
+    /// Version of this form: docs/verify-report.schema.json describes it.
+    pub schema: u32,
     /// Version of catoptric.
     pub version: &'static str,
     /// Version of OpenSubdiv.
     pub opensubdiv: String,
-    /// All meshes pass.
+    /// All meshes pass, and none was refused that must not be.
     pub pass: bool,
+    /// Width and height of the view that the fragment tier checks.
+    pub size: [u32; 2],
     /// The meshes.
     pub meshes: Vec<MeshReport>,
+    /// Meshes that were found and refused.
+    pub refused: Vec<Refused>,
+    /// Refused meshes do not fail the run.
+    pub refused_allowed: bool,
+    /// Comparison with an earlier run, if one was asked for.
+    pub baseline: Option<Comparison>,
 }
 
 impl Report {
-    /// Collects mesh reports.
-    pub fn new(meshes: Vec<MeshReport>) -> Self {
-        let pass = meshes.iter().all(|mesh| mesh.pass);
-        Self { version: env!("CARGO_PKG_VERSION"), opensubdiv: crate::osd::version(), pass, meshes }
+    /// Version of the JSON form; it grows when a reader of the old one would be misled.
+    pub const SCHEMA: u32 = 2;
+
+    /// Collects mesh reports, of views of `size`, and the meshes that were refused.
+    pub fn new(size: [u32; 2], meshes: Vec<MeshReport>, refused: Vec<Refused>) -> Self {
+        let version = env!("CARGO_PKG_VERSION");
+        let opensubdiv = crate::osd::version();
+        let (schema, refused_allowed, baseline) = (Self::SCHEMA, false, None);
+        let report = Self { schema, version, opensubdiv, pass: true, size, meshes, refused, refused_allowed, baseline };
+        report.judged()
+    }
+
+    /// Lets refused meshes pass.
+    pub fn allow_refused(self) -> Self {
+        Self { refused_allowed: true, ..self }.judged()
+    }
+
+    /// Fails on what is worse than in an earlier run, whose report is in the file `path`.
+    pub fn with_baseline(self, path: String, baseline: &Baseline) -> Self {
+        let comparison = Some(baseline.compare(path, &self.meshes));
+        Self { baseline: comparison, ..self }.judged()
+    }
+
+    fn judged(self) -> Self {
+        let meshes = self.meshes.iter().all(|mesh| mesh.pass);
+        let refused = self.refused_allowed || self.refused.is_empty();
+        let baseline = self.baseline.as_ref().is_none_or(|comparison| comparison.regressions.is_empty());
+        Self { pass: meshes && refused && baseline, ..self }
     }
 }
 
 impl Tier {
-    fn new(key: Key, bin: Bin) -> Self {
+    fn new(key: Key, bin: Bin, failures: Option<Failures>) -> Self {
         let percentile = |column: usize| {
             let mut values: Vec<f64> = bin.normals.iter().map(|normal| normal[column]).collect();
-            values.sort_by(f64::total_cmp);
             let index = ((values.len() as f64 * PERCENTILE).ceil() as usize).saturating_sub(1);
-            values.get(index).copied()
+            (index < values.len()).then(|| *values.select_nth_unstable_by(index, f64::total_cmp).1)
         };
         let [normal_p9999_deg, share] = [0, 1].map(percentile);
+        let judged = bin.position.allowed.is_some();
         let percentile_holds = !key.judges_percentile() || share.is_none_or(|share| share <= 1.0);
         Self {
-            tier: key.tier,
+            tier: key.tier.name(),
             kind: key.kind.map_or("hole", PatchKind::name),
-            reference: key.reference,
+            reference: key.against.name(),
             samples: bin.samples,
             failed: bin.failed,
+            failures,
             normals_skipped: bin.normals_skipped,
             position_max: bin.position.largest.unwrap_or(0.0),
             normal_max_deg: bin.normal.largest,
@@ -125,108 +201,73 @@ impl Tier {
             tolerance_position: bin.position.allowed,
             tolerance_normal_deg: bin.normal.allowed,
             tolerance_derivative: bin.derivative.allowed,
-            worst: bin.worst,
+            histogram: Histograms { position: bin.position.histogram, normal_deg: bin.normal.histogram },
+            worst: bin.worst.map(|worst| worst.sample),
+            times_allowed: bin.worst.filter(|worst| judged && worst.share.is_finite()).map(|worst| worst.share),
+            reproduce: None,
             pass: bin.samples > 0 && bin.failed == 0 && percentile_holds,
         }
     }
 }
 
 impl MeshReport {
-    pub(super) fn new(mesh: &SubdivMesh, surface: &LimitSurface, bins: Bins) -> Self {
+    pub(super) fn new(mesh: &SubdivMesh, surface: &LimitSurface, bins: Bins, timings: Vec<Timing>) -> Self {
         let mut patches: BTreeMap<_, usize> = PatchKind::ALL.iter().map(|kind| (kind.name(), 0)).collect();
         for patch in surface.patches() {
             *patches.entry(patch.kind.name()).or_default() += 1;
         }
-        let reference_not_asked = bins.not_asked;
+        let (reference_not_asked, patches_unjudged) = (bins.not_asked, bins.unjudged);
+        let control_faces = control_faces(mesh);
+        let failures = |failed: &FailedPatches| Failures::new(failed, surface, &control_faces);
+        let mut all_failed = FailedPatches::new();
         let (mut tiers, mut reference_known_wrong) = (Vec::new(), Vec::new());
         for (key, bin) in bins.bins {
-            let row = Tier::new(key, bin);
+            bin.failed_patches.iter().for_each(|(&patch, &failed)| note(&mut all_failed, patch, failed));
+            let failures = failures(&bin.failed_patches);
+            let row = Tier::new(key, bin, failures);
             match key.known_wrong {
                 Some(reason) => reference_known_wrong.push(KnownWrong { row, reason }),
                 None => tiers.push(row),
             }
         }
-        let order =
-            |tier: &Tier| ["vertex", "dyadic", "regular", "fragment", "endcap"].iter().position(|t| *t == tier.tier);
-        tiers.sort_by_key(order);
         Self {
             mesh: mesh.name.clone(),
+            path: None,
             faces: mesh.face_count(),
             patches,
             reference_not_asked,
+            patches_unjudged,
             pass: tiers.iter().chain(reference_known_wrong.iter().map(|known| &known.row)).all(|row| row.pass),
+            failures: failures(&all_failed),
             tiers,
             reference_known_wrong,
+            timings: Some(timings),
+        }
+    }
+
+    /// All rows, those where the reference is known to be wrong last.
+    pub fn rows(&self) -> impl Iterator<Item = &Tier> {
+        self.tiers.iter().chain(self.reference_known_wrong.iter().map(|known| &known.row))
+    }
+
+    /// Says where the mesh came from, and how to look at the worst sample of each failed row: `program` and its flags, the
+    /// mesh, `--only face,u,v`.
+    pub fn set_source(&mut self, path: Option<&str>, flags: &str) {
+        self.path = path.map(str::to_owned);
+        let known = self.reference_known_wrong.iter_mut().map(|known| &mut known.row);
+        for row in self.tiers.iter_mut().chain(known).filter(|row| !row.pass) {
+            let mesh = path.map(|path| format!(" {}", quoted(path))).unwrap_or_default();
+            row.reproduce = row.worst.map(|Sample { face, u, v }| format!("{flags}{mesh} --only {face},{u},{v}"));
         }
     }
 }
 
-impl fmt::Display for MeshReport {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let verdict = if self.pass { "pass" } else { "FAIL" };
-        let patches: Vec<_> =
-            self.patches.iter().filter(|(_, n)| **n > 0).map(|(kind, n)| format!("{n} {kind}")).collect();
-        writeln!(f, "{}: {verdict} ({} faces; patches: {})", self.mesh, self.faces, patches.join(", "))?;
-        writeln!(
-            f,
-            "  {:<8} {:<7} {:<15} {:>7} {:>15} {:>15} {:>7} {:>15} {:>7}  worst (face, u, v)",
-            "tier",
-            "kind",
-            "reference",
-            "samples",
-            "position/limit",
-            "normal/limit",
-            "p99.99",
-            "derivat./limit",
-            "skipped"
-        )?;
-        for tier in &self.tiers {
-            let verdict = match (tier.pass, tier.tolerance_position) {
-                (true, Some(_)) => "",
-                (true, None) => "  [reported only]",
-                (false, _) => "  <- FAIL",
-            };
-            writeln!(f, "  {tier}{verdict}")?;
-        }
-        for known in &self.reference_known_wrong {
-            let verdict = if known.row.pass { "" } else { "  <- FAIL" };
-            writeln!(f, "  {}  [reference wrong: {}]{verdict}", known.row, known.reason)?;
-        }
-        let skipped: usize = self.tiers.iter().map(|tier| tier.normals_skipped).sum();
-        if skipped > 0 {
-            writeln!(f, "  skipped: {skipped} normals that rounding alone turns too far to be judged")?;
-        }
-        if self.reference_not_asked > 0 {
-            let count = self.reference_not_asked;
-            writeln!(f, "  Bfr: {count} samples not asked: it reads out of bounds at interior vertices of valence 2")?;
-        }
-        Ok(())
-    }
-}
-
-impl fmt::Display for Tier {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let error = |x: Option<f64>| x.map_or("-".to_owned(), |x| format!("{x:.1e}"));
-        let judged = |x: Option<f64>, limit: Option<f64>| match limit {
-            Some(limit) => format!("{}/{limit:.1e}", error(x)),
-            None => error(x),
-        };
-        write!(
-            f,
-            "{:<8} {:<7} {:<15} {:>7} {:>15} {:>15} {:>7} {:>15} {:>7}",
-            self.tier,
-            self.kind,
-            self.reference,
-            self.samples,
-            judged(Some(self.position_max), self.tolerance_position),
-            judged(self.normal_max_deg, self.tolerance_normal_deg),
-            error(self.normal_p9999_deg),
-            judged(self.derivative_max, self.tolerance_derivative),
-            self.normals_skipped,
-        )?;
-        match self.worst {
-            Some(Sample { face, u, v }) => write!(f, "  {face} {u} {v}"),
-            None => Ok(()),
-        }
+/// A word as a POSIX shell reads it.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "/._-+=:,@%".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', "'\\''"))
     }
 }

@@ -33,6 +33,11 @@ impl Rounding {
         Self { unit, point: ROUNDINGS * f64::EPSILON * largest.max(LEAST_EXTENT) }
     }
 
+    /// The same for answers that are one sum of `terms` control points, which adds half a unit a term.
+    pub fn summing(&self, terms: u32) -> Self {
+        Self { point: self.point * (1.0 + f64::from(terms) / (2.0 * ROUNDINGS)), ..*self }
+    }
+
     /// Share of a position's error, in units.
     pub fn position(&self) -> f64 {
         self.point / self.unit

@@ -1,35 +1,65 @@
 //! Tier `vertex`: the limit at refined vertices against OpenSubdiv's limit masks.
 
-use super::bin::{Bins, Check, Difference, Key, Normal, Sample};
+use super::bin::Bins;
+use super::difference::{Check, Difference, Normal, Sample};
+use super::key::{Against, Key, TierName};
 use super::{NORMAL_LIMIT, Subject, VerifyError, rounding};
+use crate::mesh::SubdivMesh;
 use crate::osd::{Level, Refiner, Rule};
 use glam::DVec3;
 
 /// Some 20 roundings of 1e-16 on each side, level by level. Normals: OpenSubdiv's tangents are differences of world
 /// coordinates. Rounding of world coordinates comes on top ([`Rounding`](super::rounding::Rounding)).
-const POSITION: f64 = 1e-12;
-const NORMAL_DEG: f64 = 1e-6;
+pub(super) const POSITION: f64 = 1e-12;
+pub(super) const NORMAL_DEG: f64 = 1e-6;
 
 /// Vertices that a uniform refinement may have: memory, and seconds.
 const BUDGET: usize = 400_000;
 
+/// A uniform refinement and what OpenSubdiv's masks make of its last level.
+struct Masks {
+    levels: Vec<Level>,
+    limits: Vec<DVec3>,
+    first: Vec<DVec3>,
+    second: Vec<DVec3>,
+    traits: Traits,
+}
+
+impl Masks {
+    fn of(mesh: &SubdivMesh) -> Result<Self, VerifyError> {
+        let depth = if mesh.face_vertices.len() * 4 <= BUDGET { 2 } else { 1 };
+        let refiner = Refiner::uniform(mesh, depth)?;
+        let levels = (0..refiner.level_count()).map(|i| refiner.level(i)).collect::<Result<Vec<_>, _>>()?;
+        let last = levels.last().expect("a refiner has its base level");
+        let points = refiner.interpolate(&mesh.points)?;
+        let last_points = &points[points.len() - last.vertex_count()..];
+        let [limits, first, second] = refiner.limit(last_points)?;
+        let traits = Traits::of(last, last_points);
+        Ok(Self { levels, limits, first, second, traits })
+    }
+
+    fn last(&self) -> &Level {
+        &self.levels[self.levels.len() - 1]
+    }
+}
+
 pub(super) fn run(subject: &Subject<'_>, bins: &mut Bins) -> Result<(), VerifyError> {
-    let depth = if subject.mesh.face_vertices.len() * 4 <= BUDGET { 2 } else { 1 };
-    let refiner = Refiner::uniform(subject.mesh, depth)?;
-    let levels = (0..refiner.level_count()).map(|i| refiner.level(i)).collect::<Result<Vec<_>, _>>()?;
-    let Some(last) = levels.last() else { return Ok(()) };
-    let points = refiner.interpolate(&subject.mesh.points)?;
-    let last_points = &points[points.len() - last.vertex_count()..];
-    let [limits, first, second] = refiner.limit(last_points)?;
-    let traits = Traits::of(last, last_points);
-    for (vertex, sample) in locations(&levels) {
+    let masks = Masks::of(subject.mesh)?;
+    let (last, Masks { levels, limits, first, second, traits }) = (masks.last(), &masks);
+    let locations = locations(levels);
+    bins.fill(locations.len(), |bins, i| {
+        let (vertex, sample) = locations[i];
         let known_wrong = traits.known_wrong(last, vertex);
         let ours = subject.evaluate(sample);
-        let kind = ours.map(|(patch, _)| subject.surface.kind(patch));
-        let key = Key { tier: "vertex", reference: "limit masks", kind, known_wrong };
+        let patch = ours.map(|(patch, _)| patch);
+        let key = Key {
+            known_wrong,
+            ..Key::new(TierName::Vertex, Against::LimitMasks, patch.and_then(|patch| subject.kind(patch)))
+        };
+        let place = subject.place(sample, patch);
         let Some((_, jet)) = ours else {
-            bins.mismatch(key, sample);
-            continue;
+            bins.mismatch(key, place);
+            return;
         };
         let rounding = &subject.rounding;
         let allowed = match known_wrong {
@@ -47,8 +77,8 @@ pub(super) fn run(subject: &Subject<'_>, bins: &mut Bins) -> Result<(), VerifyEr
             _ => Normal::Unknown,
         };
         let error = jet.position.distance(limits[vertex]) / rounding.unit;
-        bins.add(key, sample, Difference { position: Check { error, allowed }, normal, derivative: None });
-    }
+        bins.add(key, place, Difference { position: Check { error, allowed }, normal, derivative: None });
+    });
     Ok(())
 }
 
@@ -90,24 +120,31 @@ impl Traits {
 /// One place for each vertex of the last level that has a surface.
 fn locations(levels: &[Level]) -> Vec<(usize, Sample)> {
     let mut found = vec![None; levels.last().map_or(0, Level::vertex_count)];
+    visit(levels, &mut |vertex, place| {
+        found[vertex].get_or_insert(place);
+    });
+    found.into_iter().enumerate().filter_map(|(vertex, place)| Some((vertex, place?))).collect()
+}
+
+/// Calls `see` with every corner of every face of the last level that has a surface.
+fn visit(levels: &[Level], see: &mut dyn FnMut(usize, Sample)) {
     let mut ptex = 0;
     for face in 0..levels[0].face_count() {
         let corners = levels[0].corners(face);
         if corners.len() == 4 {
-            descend(levels, 0, face, Sample { face: ptex, u: 0.0, v: 0.0 }, 1.0, &mut found);
+            descend(levels, 0, face, Sample { face: ptex, u: 0.0, v: 0.0 }, 1.0, see);
             ptex += 1;
             continue;
         }
         for i in corners {
             let child = levels[0].face_children[i] as usize;
-            descend(levels, 1, child, Sample { face: ptex, u: 0.0, v: 0.0 }, 1.0, &mut found);
+            descend(levels, 1, child, Sample { face: ptex, u: 0.0, v: 0.0 }, 1.0, see);
             ptex += 1;
         }
     }
-    found.into_iter().enumerate().filter_map(|(vertex, place)| Some((vertex, place?))).collect()
 }
 
-fn descend(levels: &[Level], level: usize, face: usize, at: Sample, size: f64, found: &mut [Option<Sample>]) {
+fn descend(levels: &[Level], level: usize, face: usize, at: Sample, size: f64, see: &mut dyn FnMut(usize, Sample)) {
     const CORNERS: [[f64; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
     let topology = &levels[level];
     if topology.face_holes[face] != 0 {
@@ -116,11 +153,34 @@ fn descend(levels: &[Level], level: usize, face: usize, at: Sample, size: f64, f
     for (i, [du, dv]) in topology.corners(face).zip(CORNERS) {
         if level + 1 == levels.len() {
             let place = Sample { u: at.u + du * size, v: at.v + dv * size, ..at };
-            found[topology.face_vertices[i] as usize].get_or_insert(place);
+            see(topology.face_vertices[i] as usize, place);
         } else {
             let half = size / 2.0;
             let origin = Sample { u: at.u + du * half, v: at.v + dv * half, ..at };
-            descend(levels, level + 1, topology.face_children[i] as usize, origin, half, found);
+            descend(levels, level + 1, topology.face_children[i] as usize, origin, half, see);
         }
     }
+}
+
+/// What the limit mask says at a sample, if a mask is there.
+pub(super) struct Mask {
+    pub position: DVec3,
+    pub tangents: [DVec3; 2],
+    pub known_wrong: Option<&'static str>,
+}
+
+/// The limit mask at a point of the surface; `None` where no vertex of the masks' level lies.
+pub(super) fn mask(mesh: &SubdivMesh, at: Sample) -> Result<Option<Mask>, VerifyError> {
+    let masks = Masks::of(mesh)?;
+    let mut found = None;
+    visit(&masks.levels, &mut |vertex, place| {
+        if place == at {
+            found = Some(vertex);
+        }
+    });
+    Ok(found.map(|vertex| Mask {
+        position: masks.limits[vertex],
+        tangents: [masks.first[vertex], masks.second[vertex]],
+        known_wrong: masks.traits.known_wrong(masks.last(), vertex),
+    }))
 }

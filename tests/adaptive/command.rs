@@ -1,7 +1,7 @@
 //! `render --patches osd` and `--compare` as a user meets them.
 
 use crate::gpu_support::mesh;
-use catoptric::osd::{EndCap, Far, Isolation, Reference};
+use catoptric::osd::{EndCap, Far, Isolation};
 use catoptric::output::{read_exr_made_by, read_png_made_by};
 use exr::prelude::{FlatSamples, read_all_flat_layers_from_file};
 use glam::DVec3;
@@ -73,7 +73,7 @@ fn exr_channels_are_those_of_the_patches_that_were_drawn() {
     let seen: Vec<usize> = (0..faces.len()).filter(|&i| faces[i] != u32::MAX).collect();
     let samples: Vec<_> = seen.iter().map(|&i| (faces[i], f64::from(u[i]), f64::from(v[i]))).collect();
     let mesh = mesh("n_gons.obj");
-    let mut far = Far::with(&mesh, Isolation::uniform(2), EndCap::Gregory).expect("it is valid");
+    let far = Far::with(&mesh, Isolation::uniform(2), EndCap::Gregory).expect("it is valid");
     let mut caps = 0;
     for (&i, answer) in seen.iter().zip(far.evaluate(&samples).expect("the faces exist")) {
         let point = DVec3::from_array(position.map(|channel| f64::from(channel[i])));

@@ -5,7 +5,7 @@ use crate::gpu_support::{Random, gpu};
 use catoptric::adaptive::AdaptivePatches;
 use catoptric::gpu::Sample;
 use catoptric::mesh::SubdivMesh;
-use catoptric::osd::{Answer, EndCap, Far, Isolation, Reference};
+use catoptric::osd::{Answer, EndCap, Far, Isolation};
 use catoptric::stam::Jet;
 
 /// Positions in f32 are sums of 16 products of numbers of the size of the patch, which is at most the diagonal: 20 roundings
@@ -40,7 +40,7 @@ struct Worst {
 /// Compares every patch of a table with what `Far` says at the same place.
 fn compare(mesh: &SubdivMesh, isolation: Isolation, end_cap: EndCap, worst: &mut Worst) {
     let ours = AdaptivePatches::new(mesh, isolation, end_cap).expect("the mesh is valid");
-    let mut far = Far::with(mesh, isolation, end_cap).expect("the mesh is valid");
+    let far = Far::with(mesh, isolation, end_cap).expect("the mesh is valid");
     assert_eq!(ours.patches().len() as u64, far.patch_count());
     let samples: Vec<Sample> = (0..ours.patches().len() as u32)
         .flat_map(|patch| parameters(u64::from(patch)).into_iter().map(move |uv| Sample { patch, uv }))

@@ -4,7 +4,7 @@
 use super::brute;
 use super::common::meshes;
 use catoptric::mesh::{self, SubdivMesh};
-use catoptric::osd::{Far, MAX_ISOLATION, Reference, Refiner};
+use catoptric::osd::{Far, MAX_ISOLATION, Refiner};
 use catoptric::stam::LimitSurface;
 use std::path::Path;
 
@@ -33,7 +33,7 @@ fn far_is_wrong_beside_darts_of_valence_2() {
     let truth = descent.offset + descent.cage.limit(vertex).expect("a regular vertex");
 
     let (_, jet) = surface.evaluate_ptex(8, [0.0, 1.0 - near]).expect("no hole");
-    let mut far = Far::new(&mesh, MAX_ISOLATION).expect("it refines");
+    let far = Far::new(&mesh, MAX_ISOLATION).expect("it refines");
     let reference = far.evaluate(&[(8, 0.0, 1.0 - near)]).expect("it evaluates");
     let [ours, theirs] = [jet.position, reference[0].position].map(|p| p.distance(truth) / surface.diagonal());
     println!("valence_2_dart: ours {ours:.1e}, OpenSubdiv's end cap {theirs:.1e} of the diagonal");

@@ -1,0 +1,129 @@
+//! `verify`: the regression against OpenSubdiv.
+
+mod inputs;
+mod many;
+
+use super::args::VerifyArgs;
+use super::{Failure, write_out};
+use crate::gpu::Gpu;
+use crate::osd::Location;
+use crate::output::check_writable;
+use crate::verify::{Baseline, MeshReport, Refused, Report, Sample, only};
+use inputs::Input;
+use many::{Job, Outcome};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
+    let start = Instant::now();
+    for path in [&args.json, &args.junit].into_iter().flatten() {
+        check_writable(path)?;
+    }
+    let baseline = args.baseline.as_deref().map(|path| read_baseline(path, args.size)).transpose()?;
+    let inputs = inputs::find(&args.meshes)?;
+    if let Some(sample) = args.only {
+        return one(args, &inputs, sample);
+    }
+    let gpu = Gpu::new()?;
+    let job = Job { gpu: &gpu, size: args.size, plant: args.plant };
+    let show = Show { width: inputs.iter().map(|input| input.name().len()).max().unwrap_or(0), args, of: inputs.len() };
+    let (mut meshes, mut refused) = (Vec::new(), Vec::new());
+    many::run(&inputs, &job, |input, outcome| {
+        match outcome {
+            Outcome::Verified(mut report) => {
+                report.set_source(input.source().as_deref(), &show.flags());
+                if !args.timings {
+                    report.timings = None;
+                }
+                show.report(&report)?;
+                meshes.push(*report);
+            }
+            Outcome::Refused(reason) => {
+                let path = input.source().unwrap_or_default();
+                write_out(None, format!("refused  {reason}\n").as_bytes())?;
+                refused.push(Refused { path, reason });
+            }
+        }
+        Ok(())
+    })?;
+    let mut report = Report::new(args.size, meshes, refused);
+    if args.allow_refused {
+        report = report.allow_refused();
+    }
+    if let Some((path, baseline)) = args.baseline.as_ref().zip(baseline) {
+        report = report.with_baseline(path.display().to_string(), &baseline);
+    }
+    if let Some(path) = &args.json {
+        write_json(path, &report)?;
+    }
+    if let Some(path) = &args.junit {
+        let text = report.junit().map_err(|error| Failure::Bad(format!("{}: {error}", path.display())))?;
+        write_out(Some(path), text.as_bytes())?;
+    }
+    if let Some(comparison) = &report.baseline {
+        write_out(None, comparison.to_string().as_bytes())?;
+    }
+    write_out(None, format!("{} ({:.1} s)\n", report.verdict(), start.elapsed().as_secs_f64()).as_bytes())?;
+    if report.pass { Ok(()) } else { Err(Failure::Check) }
+}
+
+fn read_baseline(path: &Path, size: [u32; 2]) -> Result<Baseline, Failure> {
+    let bad = |what: String| Failure::Bad(format!("{}: {what}", path.display()));
+    let json = std::fs::read(path).map_err(|error| bad(format!("cannot be read ({error}); give an earlier report")))?;
+    Baseline::read(&json, size).map_err(|error| bad(error.to_string()))
+}
+
+/// `--only`: all evaluations of one point. It shows, and judges nothing.
+fn one(args: &VerifyArgs, inputs: &[Input], (face, u, v): Location) -> Result<(), Failure> {
+    let [input] = inputs else {
+        return Err(Failure::Bad(format!("--only takes one mesh, not {}; name it", inputs.len())));
+    };
+    let mesh = input.mesh().map_err(Failure::Bad)?;
+    // Without an adapter the shader is left out: what f64 and OpenSubdiv say does not need it.
+    let gpu = Gpu::new().ok();
+    let shown = only(&mesh, gpu.as_ref(), Sample { face, u, v }, args.plant)
+        .map_err(|error| Failure::of_input(input, error.to_string()))?;
+    if let Some(path) = &args.json {
+        write_json(path, &shown)?;
+    }
+    write_out(None, shown.to_string().as_bytes())
+}
+
+fn write_json(path: &PathBuf, value: &impl serde::Serialize) -> Result<(), Failure> {
+    let mut text = serde_json::to_vec_pretty(value).map_err(std::io::Error::from)?;
+    text.push(b'\n');
+    write_out(Some(path), &text)
+}
+
+/// How reports are shown as they come in.
+struct Show<'a> {
+    args: &'a VerifyArgs,
+    /// Longest name.
+    width: usize,
+    /// Number of meshes.
+    of: usize,
+}
+
+impl Show<'_> {
+    /// The command that shows a single sample, up to the mesh.
+    fn flags(&self) -> String {
+        let plant = self.args.plant.map(|plant| format!(" --plant {plant}")).unwrap_or_default();
+        format!("catoptric verify{plant}")
+    }
+
+    /// All rows of a single mesh; of many a line each, and the rows that failed.
+    fn report(&self, report: &MeshReport) -> Result<(), Failure> {
+        let text = match (self.of == 1 || self.args.verbose, report.pass) {
+            (true, _) => report.to_string(),
+            (false, true) => format!("{}\n", report.line(self.width)),
+            (false, false) => format!("{}\n{}", report.line(self.width), report.table(true)),
+        };
+        write_out(None, text.as_bytes())
+    }
+}
+
+impl Failure {
+    fn of_input(input: &Input, reason: String) -> Self {
+        Self::Bad(format!("{}: {reason}", input.name()))
+    }
+}
