@@ -98,7 +98,7 @@ fn structs_have_the_same_layout_on_both_sides() {
             key,
             padding3,
             picture_scale,
-            padding4
+            range
         }
     );
     same_layout!("Lens", LensRecord { size, perspective, scale });

@@ -6,12 +6,14 @@
 //! Practice: a new method is one file here, one variant of [`Method`], and one file in `shaders/field/`.
 
 mod camera;
+pub mod colours;
 mod curvature;
 mod curve;
 mod distance;
 mod highlight;
 mod isophote;
 mod light;
+mod names;
 mod pattern;
 mod reflection;
 mod rig;

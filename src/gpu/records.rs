@@ -222,6 +222,6 @@ pub struct ShadeRecord {
     pub padding3: f32,
     /// From plane coordinates to texture coordinates.
     pub picture_scale: [f32; 2],
-    /// Zero.
-    pub padding4: [f32; 2],
+    /// Ends of the scale of false colours, in the shader's units of the field.
+    pub range: [f32; 2],
 }

@@ -4,7 +4,7 @@ use super::NO_PATCH;
 use super::charts::BAND;
 use super::records::ChartRecord;
 use super::tables::TABLE_LEVELS;
-use crate::field::Method;
+use crate::field::{Method, colours};
 use crate::stam::LEVELS;
 
 /// Kind of a patch of 16 points.
@@ -21,6 +21,10 @@ pub const PATTERN_LATTICE: u32 = 1;
 pub const PATTERN_CIRCLES: u32 = 2;
 /// A picture.
 pub const PATTERN_PICTURE: u32 = 3;
+/// One stripe.
+pub const PATTERN_BAND: u32 = 4;
+/// False colours.
+pub const PATTERN_HEAT: u32 = 5;
 /// Invocations in a workgroup of the compute passes.
 pub const WORKGROUP: u32 = 64;
 /// Highest level n with 2^-n a normal f32: the number of scales of a class.
@@ -128,6 +132,7 @@ const FULLSCREEN: &str = include_str!("../../shaders/shared/fullscreen.wgsl");
 const VISIBILITY_PASS: &str = include_str!("../../shaders/visibility.wgsl");
 const SURFACE: &str = include_str!("../../shaders/shared/surface.wgsl");
 const OCTAHEDRAL: &str = include_str!("../../shaders/shared/octahedral.wgsl");
+const HEAT: &str = include_str!("../../shaders/shared/heat.wgsl");
 const PATTERN: &str = include_str!("../../shaders/shared/pattern.wgsl");
 const CURVATURE: &str = include_str!("../../shaders/shared/curvature.wgsl");
 const LIGHT: &str = include_str!("../../shaders/field/light.wgsl");
@@ -192,7 +197,7 @@ pub const POLYGON: Module = Module {
 /// Colour.
 pub const SHADE: Module = Module {
     name: "shade",
-    files: &[LIGHT, OCTAHEDRAL, PATTERN, FULLSCREEN, include_str!("../../shaders/shade.wgsl")],
+    files: &[LIGHT, OCTAHEDRAL, PATTERN, HEAT, FULLSCREEN, include_str!("../../shaders/shade.wgsl")],
 };
 /// Linear sum to sRGB.
 pub const RESOLVE: Module =
@@ -222,6 +227,8 @@ fn constants(variant: &Variant) -> String {
         ("PATTERN_LATTICE", PATTERN_LATTICE),
         ("PATTERN_CIRCLES", PATTERN_CIRCLES),
         ("PATTERN_PICTURE", PATTERN_PICTURE),
+        ("PATTERN_BAND", PATTERN_BAND),
+        ("PATTERN_HEAT", PATTERN_HEAT),
         ("WORKGROUP", WORKGROUP),
         ("TILE_SIDE", TILE_SIDE),
         ("TABLE_WIDTH", TABLE_WIDTH),
@@ -238,6 +245,14 @@ fn constants(variant: &Variant) -> String {
     ];
     let mut text: String = counts.iter().map(|(name, value)| format!("const {name} = {value}u;\n")).collect();
     text.push_str(&format!("const PUSH = {PUSH:?};\nconst SETTLED = {SETTLED:?};\nconst BAND = {BAND:?};\n"));
+    let vector = |[r, g, b]: [u8; 3]| {
+        let [r, g, b] = [r, g, b].map(|c| f32::from(c) / 255.0);
+        format!("vec3f({r:?}, {g:?}, {b:?})")
+    };
+    for (name, ramp) in [("HEAT_COLOURS", colours::HEAT), ("DIVERGING_COLOURS", colours::DIVERGING)] {
+        text.push_str(&format!("const {name} = array({});\n", ramp.map(vector).join(", ")));
+    }
+    text.push_str(&format!("const UNDEFINED_COLOUR = {};\n", vector(colours::UNDEFINED)));
     text.push_str(&format!("const HAS_TAIL = {};\nconst HAS_GREGORY = {};\n", variant.has_tail, variant.has_gregory));
     text
 }

@@ -2,7 +2,9 @@
 
 use super::fields::FieldNumbers;
 use super::records::{FrameRecord, LightRecord, ResolveRecord, ShadeRecord};
-use super::shader::{Content, PATTERN_CIRCLES, PATTERN_LATTICE, PATTERN_PICTURE, PATTERN_STRIPES};
+use super::shader::{
+    Content, PATTERN_BAND, PATTERN_CIRCLES, PATTERN_HEAT, PATTERN_LATTICE, PATTERN_PICTURE, PATTERN_STRIPES,
+};
 use super::{GpuError, Tables};
 use crate::field::{Camera, Field, Light, Pattern, Projection};
 use glam::DVec3;
@@ -315,7 +317,14 @@ impl View {
             Pattern::Stripes { width } => (PATTERN_STRIPES, *width),
             Pattern::Lattice { width } => (PATTERN_LATTICE, *width),
             Pattern::Circles { radius } => (PATTERN_CIRCLES, *radius),
+            Pattern::Band { radius } => (PATTERN_BAND, 2.0 * radius),
+            Pattern::Heat { .. } => (PATTERN_HEAT, 0.0),
             Pattern::Picture(_) => (PATTERN_PICTURE, 0.0),
+        };
+        let scale = self.field.method.scale(tables.unit());
+        let range = match self.pattern {
+            Pattern::Heat { range } => range.map(|end| (end / scale) as f32),
+            _ => [0.0; 2],
         };
         let Palette { paint, tube, top, bottom } = self.palette;
         let axes = self.camera.axes();
@@ -334,10 +343,8 @@ impl View {
             padding2: 0.0,
             key: key.as_vec3().to_array(),
             padding3: 0.0,
-            picture_scale: (self.pattern.picture_scale(self.light()) * self.field.method.scale(tables.unit()))
-                .as_vec2()
-                .to_array(),
-            padding4: [0.0; 2],
+            picture_scale: (self.pattern.picture_scale(self.light()) * scale).as_vec2().to_array(),
+            range,
         }
     }
 
