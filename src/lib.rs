@@ -14,6 +14,7 @@
 //! * [`compare`]: how far a picture of other patches is from the exact one;
 //! * [`verify`]: all of it compared with OpenSubdiv;
 //! * [`output`]: files, written whole or not at all;
+//! * [`page`]: the report of a verification as one HTML page;
 //! * [`cli`]: the command line.
 //!
 //! ```
@@ -35,6 +36,7 @@ pub mod gpu;
 pub mod mesh;
 pub mod osd;
 pub mod output;
+pub mod page;
 pub mod patch;
 pub mod stam;
 pub mod statistics;

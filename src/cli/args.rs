@@ -65,6 +65,9 @@ pub(super) struct VerifyArgs {
     /// Write the report as JUnit XML, for CI systems
     #[arg(long, value_name = "FILE")]
     pub junit: Option<PathBuf>,
+    /// Write the report as one HTML page with histograms and pictures, which needs no network
+    #[arg(long, value_name = "FILE")]
+    pub html: Option<PathBuf>,
     /// Fail on what is worse than in this earlier JSON report
     #[arg(long, value_name = "FILE")]
     pub baseline: Option<PathBuf>,
@@ -75,7 +78,7 @@ pub(super) struct VerifyArgs {
     #[arg(long, value_name = "WxH", default_value = "512x512", value_parser = size)]
     pub size: [u32; 2],
     /// Show all evaluations of one point of one mesh side by side, with the control points involved
-    #[arg(long, value_name = "FACE,U,V", value_parser = location, conflicts_with_all = ["junit", "baseline"])]
+    #[arg(long, value_name = "FACE,U,V", value_parser = location, conflicts_with_all = ["junit", "html", "baseline"])]
     pub only: Option<crate::osd::Location>,
     /// Print every row, also of many meshes
     #[arg(short, long)]
@@ -86,6 +89,9 @@ pub(super) struct VerifyArgs {
     /// Plant an error in our evaluation, to test that it is caught: point[:PATCH], crease[:N] or swap
     #[arg(long, value_name = "ERROR", hide = true)]
     pub plant: Option<crate::verify::Plant>,
+    /// The conformance test
+    #[command(flatten)]
+    pub conformance: super::verify::ConformanceArgs,
 }
 
 #[derive(Debug, Args)]

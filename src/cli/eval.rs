@@ -1,15 +1,16 @@
 //! `eval`: position, derivatives and normal at given samples.
 
 use super::args::{Backend, EvalArgs};
+use super::rows::{Rows, check_place, parameter, shortest};
 use super::{Failure, load, write_out};
 use crate::gpu::{self, Gpu};
 use crate::mesh::SubdivMesh;
 use crate::osd::{Answer, Far, MAX_ISOLATION};
 use crate::output::check_writable;
 use crate::stam::{Jet, LimitSurface};
+use csv::StringRecord;
 use rayon::prelude::*;
 use serde::Deserialize;
-use std::fmt::Display;
 use std::path::Path;
 
 const HEADER: [&str; 16] =
@@ -23,11 +24,8 @@ struct Sample {
 }
 
 impl Sample {
-    /// The parameters as evaluators take them: so close to 0 that exponents end, they count as 0, which moves no point
-    /// by as much as a rounding.
     fn uv(self) -> [f64; 2] {
-        const LEAST: f64 = 1e-300;
-        [self.u, self.v].map(|x| if x < LEAST { 0.0 } else { x })
+        [self.u, self.v].map(parameter)
     }
 }
 
@@ -46,48 +44,16 @@ pub(super) fn run(args: &EvalArgs) -> Result<(), Failure> {
 
 /// Reads `face,u,v` rows, every one checked.
 fn read(path: &Path, faces: usize) -> Result<Vec<Sample>, Failure> {
-    let bad = |line: Option<u64>, what: String| {
-        let place = line.map_or(String::new(), |line| format!(":{line}"));
-        Failure::Bad(format!("{}{place}: {what}", path.display()))
+    let header = |header: Option<&StringRecord>| {
+        let header = header.filter(|header| header.iter().eq(["face", "u", "v"])).cloned();
+        header.ok_or_else(|| "the header is not face,u,v; make it the first line".to_owned())
     };
-    let unread = |what: &dyn Display| {
-        bad(None, format!("cannot read the samples: {what}; give a CSV file with the header face,u,v"))
-    };
-    if path.is_dir() {
-        return Err(unread(&"it is a folder"));
-    }
-    let text = std::fs::read(path).map_err(|e| unread(&e))?;
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(&text[..]);
-    let header = reader.headers().ok().filter(|header| header.iter().eq(["face", "u", "v"])).cloned();
-    let header = header.ok_or_else(|| bad(Some(1), "the header is not face,u,v; make it the first line".to_owned()))?;
-    let mut samples = Vec::new();
-    for row in reader.into_records() {
-        let start = match &row {
-            Ok(row) => row.position(),
-            Err(error) => error.position(),
-        };
-        let line = || start.map(|start| line_of(&text, start.byte() as usize));
-        let what = "not a row of face,u,v (a whole number and two numbers); correct it";
-        let sample = row.as_ref().ok().and_then(|row| row.deserialize::<Sample>(Some(&header)).ok());
-        let sample = sample.ok_or_else(|| bad(line(), what.to_owned()))?;
-        if sample.face as usize >= faces {
-            let range = format!("ptex face {} does not exist; the mesh has {faces}, counted from 0", sample.face);
-            return Err(bad(line(), range));
-        }
-        for (name, x) in [("u", sample.u), ("v", sample.v)] {
-            if !(0.0..=1.0).contains(&x) {
-                return Err(bad(line(), format!("{name} = {x} is outside 0 to 1; correct it")));
-            }
-        }
-        samples.push(sample);
-    }
-    Ok(samples)
-}
-
-/// Line of the record whose reading began at `start`: the reader skips empty lines before it.
-fn line_of(text: &[u8], start: usize) -> u64 {
-    let empty = text[start..].iter().take_while(|byte| matches!(byte, b'\n' | b'\r')).count();
-    text[..start + empty].iter().filter(|&&byte| byte == b'\n').count() as u64 + 1
+    let not_a_row = "not a row of face,u,v (a whole number and two numbers); correct it";
+    Rows::open(path, "samples", "face,u,v")?.read(header, not_a_row, |header, row| {
+        let sample: Sample = row.deserialize(Some(header)).map_err(|_| not_a_row.to_owned())?;
+        check_place((sample.face, sample.u, sample.v), faces)?;
+        Ok(sample)
+    })
 }
 
 fn on_gpu(surface: &LimitSurface, samples: &[Sample]) -> Result<Vec<Option<Jet>>, Failure> {
@@ -117,11 +83,6 @@ fn by_opensubdiv(mesh: &SubdivMesh, samples: &[Sample]) -> Result<Vec<Option<Jet
         normal: r.du.cross(r.dv).normalize_or_zero(),
     };
     Ok(answers.iter().map(|r| (r.answer != Answer::None).then(|| jet(r))).collect())
-}
-
-/// A parameter in as few digits as bring it back, with an exponent where there would be rows of zeros.
-fn shortest(x: f64) -> String {
-    if x == 0.0 || x >= 1e-5 { x.to_string() } else { format!("{x:e}") }
 }
 
 /// The answers as CSV, numbers with 17 digits; a sample in a hole has no numbers.

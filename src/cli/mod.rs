@@ -10,6 +10,7 @@ mod info;
 mod patches;
 mod render;
 mod rig;
+mod rows;
 mod settings;
 mod verify;
 

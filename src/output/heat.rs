@@ -88,7 +88,7 @@ impl Scale {
     }
 
     /// Colour at a place, from 0 to 1.
-    pub(super) fn colour_at(&self, place: f32) -> [u8; 3] {
+    pub fn colour_at(&self, place: f32) -> [u8; 3] {
         match self.logarithmic {
             true => colours::at(&colours::HEAT, place),
             false => self.colour(self.least + place * (self.most - self.least)),

@@ -33,3 +33,36 @@ pub fn read_png_made_by(file: impl BufRead + Seek) -> std::io::Result<Option<Str
     let texts = &reader.info().utf8_text;
     Ok(texts.iter().find(|text| text.keyword == MADE_BY).and_then(|text| text.get_text().ok()))
 }
+
+/// An opaque picture as the bytes of a PNG file: as small as they come, with a palette where 256 colours are enough.
+///
+/// # Panics
+/// The bytes do not match the size.
+pub fn png_bytes(size: [u32; 2], rgba8: &[u8]) -> Vec<u8> {
+    let pixels = rgba8.as_chunks::<4>().0;
+    let mut palette: Vec<[u8; 3]> = pixels.iter().map(|&[r, g, b, _]| [r, g, b]).collect();
+    palette.sort_unstable();
+    palette.dedup();
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, size[0], size[1]);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::High);
+    let data: Vec<u8> = if palette.len() <= 256 {
+        encoder.set_color(png::ColorType::Indexed);
+        // Neighbouring numbers are no neighbouring colours: filters would only get in the way.
+        encoder.set_filter(png::Filter::NoFilter);
+        encoder.set_palette(palette.as_flattened().to_vec());
+        let index = |&[r, g, b, _]: &[u8; 4]| palette.partition_point(|colour| *colour < [r, g, b]) as u8;
+        pixels.iter().map(index).collect()
+    } else {
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_filter(png::Filter::Adaptive);
+        pixels.iter().flat_map(|&[r, g, b, _]| [r, g, b]).collect()
+    };
+    let written = encoder.write_header().and_then(|mut writer| {
+        writer.write_image_data(&data)?;
+        writer.finish()
+    });
+    written.expect("memory takes a picture of the right size");
+    bytes
+}

@@ -15,12 +15,12 @@ use rayon::prelude::*;
 
 /// Positions relative to the patch in f32: some 20 roundings of 6e-8 of the patch's size. The normal budget is that of
 /// reflection lines, held at the 99.99th percentile: 1/100 pixel of reflection line is 1.4e-3 degrees.
-const POSITION: f64 = 2e-6;
-const NORMAL_DEG: f64 = 1e-3;
+pub(super) const POSITION: f64 = 2e-6;
+pub(super) const NORMAL_DEG: f64 = 1e-3;
 
 /// Length by which f32 moves a derivative, in units of the larger of the two: 20 roundings of 2^-24 of the control net,
 /// which is three cells wide.
-const DERIVATIVE: f64 = 20.0 * 3.0 / 16_777_216.0;
+pub(super) const DERIVATIVE: f64 = 20.0 * 3.0 / 16_777_216.0;
 
 /// Samples of the shader's evaluation, and on one patch.
 const BUDGET: usize = 200_000;

@@ -55,6 +55,13 @@ fn suite(mesh: &MeshReport) -> TestSuite {
         let title = format!("{} {} / {}{known}", row.tier, row.kind, row.reference);
         suite.add_test_case(case(name, &title, status));
     }
+    if let Some(results) = &mesh.results {
+        let status = match results.missing() {
+            Some(missing) => not_passed(NonSuccessKind::Failure, &missing),
+            None => TestCaseStatus::success(),
+        };
+        suite.add_test_case(case(name, "results: standard samples answered", status));
+    }
     suite
 }
 

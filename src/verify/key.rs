@@ -10,6 +10,8 @@ pub(super) enum TierName {
     Regular,
     Fragment,
     EndCap,
+    /// Another program's answers.
+    Results,
 }
 
 impl TierName {
@@ -20,6 +22,7 @@ impl TierName {
             Self::Regular => "regular",
             Self::Fragment => "fragment",
             Self::EndCap => "endcap",
+            Self::Results => "results",
         }
     }
 }
@@ -27,6 +30,8 @@ impl TierName {
 /// What is compared with, in report order: the main reference first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Against {
+    /// Our own f64, for another program's answers.
+    Limit,
     /// `PrimvarRefiner::Limit`.
     LimitMasks,
     /// `Far::LimitStencilTable` in double precision at isolation 10.
@@ -46,6 +51,7 @@ pub(super) enum Against {
 impl Against {
     pub fn name(self) -> &'static str {
         match self {
+            Self::Limit => "limit",
             Self::LimitMasks => "limit masks",
             Self::LimitStencils => "limit stencils level 10",
             Self::Far => "Far level 10",

@@ -7,6 +7,7 @@
 mod baseline;
 mod bin;
 mod clock;
+pub mod conformance;
 mod difference;
 mod dyadic;
 mod endcap;

@@ -3,6 +3,7 @@
 use super::baseline::{Baseline, Comparison};
 use super::bin::{Bin, Bins, FailedPatches, note};
 use super::clock::Timing;
+use super::conformance::Results;
 use super::difference::Sample;
 use super::failures::{Failures, control_faces};
 use super::histogram::Histogram;
@@ -19,7 +20,7 @@ const PERCENTILE: f64 = 0.9999;
 /// One row: a tier, a reference and a patch kind.
 #[derive(Debug, Clone, Serialize)]
 pub struct Tier {
-    /// `vertex`, `dyadic`, `regular`, `fragment` or `endcap`.
+    /// `vertex`, `dyadic`, `regular`, `fragment` or `endcap`; `results` for another program's answers.
     pub tier: &'static str,
     /// Patch kind.
     pub kind: &'static str,
@@ -107,6 +108,9 @@ pub struct MeshReport {
     pub tiers: Vec<Tier>,
     /// Where the reference is wrong.
     pub reference_known_wrong: Vec<KnownWrong>,
+    /// What was found about another program's answers; absent where the tiers ran.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub results: Option<Results>,
     /// How long each step took; absent unless it is asked for, because it differs from run to run.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub timings: Option<Vec<Timing>>,
@@ -241,6 +245,7 @@ impl MeshReport {
             failures: failures(&all_failed),
             tiers,
             reference_known_wrong,
+            results: None,
             timings: Some(timings),
         }
     }

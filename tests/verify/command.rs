@@ -4,7 +4,7 @@ use super::{folder, json, run, text};
 use std::fs;
 
 /// Errors of a report by docs/verify-report.schema.json.
-fn schema_errors(report: &serde_json::Value) -> Vec<String> {
+pub fn schema_errors(report: &serde_json::Value) -> Vec<String> {
     let schema: serde_json::Value =
         serde_json::from_str(include_str!("../../docs/verify-report.schema.json")).expect("the schema is JSON");
     let validator = jsonschema::validator_for(&schema).expect("the schema is one");

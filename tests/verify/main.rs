@@ -1,8 +1,13 @@
 //! The regression against OpenSubdiv: that it passes, that it can fail, and what it tells whom.
 
+mod answers;
 mod baseline;
 mod command;
+#[path = "../common/mod.rs"]
+mod common;
+mod conformance;
 mod corpus;
+mod html;
 mod inputs;
 mod only;
 mod planted;

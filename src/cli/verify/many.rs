@@ -3,6 +3,7 @@
 use super::super::{Failure, Steps, progress};
 use super::inputs::Input;
 use crate::gpu::Gpu;
+use crate::page::Pictures;
 use crate::verify::{MeshReport, Plant, VerifyError, verify_planted};
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -13,11 +14,13 @@ pub(super) struct Job<'a> {
     pub gpu: &'a Gpu,
     pub size: [u32; 2],
     pub plant: Option<Plant>,
+    /// Pictures are wanted too.
+    pub pictures: bool,
 }
 
 /// What became of a mesh.
 pub(super) enum Outcome {
-    Verified(Box<MeshReport>),
+    Verified(Box<MeshReport>, Pictures),
     /// Found in a folder or by a pattern, and not fit to be verified: why, in one line.
     Refused(String),
 }
@@ -27,15 +30,14 @@ const AT_A_TIME: usize = 4;
 
 impl Job<'_> {
     fn verify(&self, input: &Input) -> Result<Outcome, Failure> {
-        let report = |input: &Input| -> Result<MeshReport, Refusal> {
+        let report = |input: &Input| -> Result<(MeshReport, Pictures), Refusal> {
             let mesh = input.mesh().map_err(Refusal::Mesh)?;
-            verify_planted(&mesh, self.gpu, self.size, self.plant).map_err(|error| match error {
-                VerifyError::Gpu(error) => Refusal::Gpu(error.into()),
-                error => Refusal::Verify(error.to_string()),
-            })
+            let report = verify_planted(&mesh, self.gpu, self.size, self.plant)?;
+            let pictures = if self.pictures { Pictures::take(&mesh, self.gpu)? } else { Pictures::default() };
+            Ok((report, pictures))
         };
         match (report(input), input.is_named()) {
-            (Ok(report), _) => Ok(Outcome::Verified(Box::new(report))),
+            (Ok((report, pictures)), _) => Ok(Outcome::Verified(Box::new(report), pictures)),
             (Err(Refusal::Gpu(failure)), _) => Err(failure),
             (Err(Refusal::Mesh(reason)), false) => Ok(Outcome::Refused(reason)),
             (Err(Refusal::Mesh(reason)), true) => Err(Failure::Bad(reason)),
@@ -55,6 +57,15 @@ enum Refusal {
     Verify(String),
     /// The adapter is at fault, not the mesh.
     Gpu(Failure),
+}
+
+impl From<VerifyError> for Refusal {
+    fn from(error: VerifyError) -> Self {
+        match error {
+            VerifyError::Gpu(error) => Self::Gpu(error.into()),
+            error => Self::Verify(error.to_string()),
+        }
+    }
 }
 
 /// Verifies all, some at a time, and hands each outcome on as soon as those before it are.

@@ -1,5 +1,7 @@
 //! `verify`: the regression against OpenSubdiv.
 
+mod answers;
+mod conformance;
 mod inputs;
 mod many;
 
@@ -8,7 +10,9 @@ use super::{Failure, write_out};
 use crate::gpu::Gpu;
 use crate::osd::Location;
 use crate::output::check_writable;
+use crate::page::{Pictures, page};
 use crate::verify::{Baseline, MeshReport, Refused, Report, Sample, only};
+pub(super) use conformance::ConformanceArgs;
 use inputs::Input;
 use many::{Job, Outcome};
 use std::path::{Path, PathBuf};
@@ -16,27 +20,31 @@ use std::time::Instant;
 
 pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
     let start = Instant::now();
-    for path in [&args.json, &args.junit].into_iter().flatten() {
+    for path in [&args.json, &args.junit, &args.html, &args.conformance.samples_out].into_iter().flatten() {
         check_writable(path)?;
     }
     let baseline = args.baseline.as_deref().map(|path| read_baseline(path, args.size)).transpose()?;
     let inputs = inputs::find(&args.meshes)?;
+    if args.conformance.asked() {
+        return conformance::run(args, &inputs);
+    }
     if let Some(sample) = args.only {
         return one(args, &inputs, sample);
     }
     let gpu = Gpu::new()?;
-    let job = Job { gpu: &gpu, size: args.size, plant: args.plant };
+    let job = Job { gpu: &gpu, size: args.size, plant: args.plant, pictures: args.html.is_some() };
     let show = Show { width: inputs.iter().map(|input| input.name().len()).max().unwrap_or(0), args, of: inputs.len() };
-    let (mut meshes, mut refused) = (Vec::new(), Vec::new());
+    let (mut meshes, mut pictures, mut refused) = (Vec::new(), Vec::new(), Vec::new());
     many::run(&inputs, &job, |input, outcome| {
         match outcome {
-            Outcome::Verified(mut report) => {
+            Outcome::Verified(mut report, shown) => {
                 report.set_source(input.source().as_deref(), &show.flags());
                 if !args.timings {
                     report.timings = None;
                 }
                 show.report(&report)?;
                 meshes.push(*report);
+                pictures.push(shown);
             }
             Outcome::Refused(reason) => {
                 let path = input.source().unwrap_or_default();
@@ -53,18 +61,34 @@ pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
     if let Some((path, baseline)) = args.baseline.as_ref().zip(baseline) {
         report = report.with_baseline(path.display().to_string(), &baseline);
     }
-    if let Some(path) = &args.json {
-        write_json(path, &report)?;
-    }
-    if let Some(path) = &args.junit {
-        let text = report.junit().map_err(|error| Failure::Bad(format!("{}: {error}", path.display())))?;
-        write_out(Some(path), text.as_bytes())?;
-    }
+    write_files(args, &report, Some(gpu.adapter()), &pictures)?;
     if let Some(comparison) = &report.baseline {
         write_out(None, comparison.to_string().as_bytes())?;
     }
     write_out(None, format!("{} ({:.1} s)\n", report.verdict(), start.elapsed().as_secs_f64()).as_bytes())?;
     if report.pass { Ok(()) } else { Err(Failure::Check) }
+}
+
+/// Writes the report as the files that were asked for.
+fn write_files(
+    args: &VerifyArgs,
+    report: &Report,
+    adapter: Option<&str>,
+    pictures: &[Pictures],
+) -> Result<(), Failure> {
+    if let Some(path) = &args.json {
+        write_json(path, report)?;
+    }
+    if let Some(path) = &args.junit {
+        let text = report.junit().map_err(|error| Failure::Bad(format!("{}: {error}", path.display())))?;
+        write_out(Some(path), text.as_bytes())?;
+    }
+    if let Some(path) = &args.html {
+        let text =
+            page(report, adapter, pictures).map_err(|error| Failure::Bad(format!("{}: {error}", path.display())))?;
+        write_out(Some(path), text.as_bytes())?;
+    }
+    Ok(())
 }
 
 fn read_baseline(path: &Path, size: [u32; 2]) -> Result<Baseline, Failure> {
