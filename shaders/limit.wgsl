@@ -13,7 +13,7 @@ fn limit(@builtin(position) position: vec4f) -> @location(0) vec4u {
     let pixel = vec2u(position.xy);
     let patch_id = textureLoad(visible_patch, pixel, 0).x - 1u;
     let p = limit_at(pixel, patch_id);
-    return packed_surface(patch_id, p.position, p.normal);
+    return packed_surface(patch_id, p.position, p.normal, p.curvature);
 }
 
 @fragment
@@ -21,7 +21,7 @@ fn limit_full(@builtin(position) position: vec4f) -> Surface {
     let pixel = vec2u(position.xy);
     let patch_id = textureLoad(visible_patch, pixel, 0).x - 1u;
     let p = limit_at(pixel, patch_id);
-    return surface(patch_id, p.position, p.normal);
+    return surface(patch_id, p.position, p.normal, p.curvature);
 }
 
 // The same as a compute pass: `--stage compute`.
@@ -36,7 +36,7 @@ fn limit_compute(@builtin(global_invocation_id) id: vec3u) {
     var packed = vec4u(0u);
     if found > 0u {
         let p = limit_at(id.xy, found - 1u);
-        packed = packed_surface(found - 1u, p.position, p.normal);
+        packed = packed_surface(found - 1u, p.position, p.normal, p.curvature);
     }
     textureStore(packed_out, id.xy, packed);
 }

@@ -9,12 +9,14 @@
 fn polygon(@builtin(position) position: vec4f) -> @location(0) vec4u {
     let pixel = vec2u(position.xy);
     let patch_id = textureLoad(visible_patch, pixel, 0).x - 1u;
-    return packed_surface(patch_id, textureLoad(proxy_position, pixel, 0).xyz, textureLoad(proxy_normal, pixel, 0).xyz);
+    return packed_surface(patch_id, textureLoad(proxy_position, pixel, 0).xyz, textureLoad(proxy_normal, pixel, 0).xyz,
+        vec3f(0.0));
 }
 
 @fragment
 fn polygon_full(@builtin(position) position: vec4f) -> Surface {
     let pixel = vec2u(position.xy);
     let patch_id = textureLoad(visible_patch, pixel, 0).x - 1u;
-    return surface(patch_id, textureLoad(proxy_position, pixel, 0).xyz, textureLoad(proxy_normal, pixel, 0).xyz);
+    return surface(patch_id, textureLoad(proxy_position, pixel, 0).xyz, textureLoad(proxy_normal, pixel, 0).xyz,
+        vec3f(0.0));
 }

@@ -20,7 +20,8 @@ struct Shade {
     key: vec3f,
     padding3: f32,
     picture_scale: vec2f,
-    padding4: vec2f,
+    // Ends of the scale of false colours.
+    range: vec2f,
 }
 
 @group(0) @binding(0) var packed: texture_2d<u32>;
@@ -65,6 +66,7 @@ fn radiance(field: vec2f, jx: vec2f, jy: vec2f) -> vec3f {
         case PATTERN_LATTICE: {
             on = vec3f(1.0 - (1.0 - stripe(s.x, shade_in.width, w.x, n)) * (1.0 - stripe(s.y, shade_in.width, w.y, n)));
         }
+        case PATTERN_BAND: { on = vec3f(slab(s.x, 0.5 * shade_in.width, w.x)); }
         case PATTERN_CIRCLES: { on = vec3f(disc(s, shade_in.width, sx, sy, n)); }
         default: {
             let k = shade_in.picture_scale;
@@ -86,6 +88,9 @@ fn shaded(pixel: vec2i, s: vec4u) -> vec4f {
     let fresnel = 0.04 + 0.5 * pow(1.0 - min(facing, 1.0), 4.0);
     let body = mix(shade_in.paint * (0.25 + 1.25 * wrap * wrap), around, fresnel * wrap);
     let f = bitcast<vec2f>(s.xy);
+    if shade_in.pattern == PATTERN_HEAT {
+        return vec4f(false_colour(f.x, shade_in.range, angles.y > 0.0) * (0.35 + 0.65 * wrap), 1.0);
+    }
     let jx = change(f, pixel, vec2i(1, 0));
     let jy = change(f, pixel, vec2i(0, 1));
     // Tubes far along the plane fade out before its horizon cuts them off.

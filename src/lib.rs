@@ -9,6 +9,7 @@
 //! * [`adaptive`]: OpenSubdiv's own patches, end caps included, as other programs show them;
 //! * [`statistics`]: what errors are summed up in;
 //! * [`field`]: cameras, lights and what a surface mirrors;
+//! * [`curves`]: contours of a field as exact curves on the surface;
 //! * [`gpu`]: the same limit for every pixel, in a fragment pipeline;
 //! * [`compare`]: how far a picture of other patches is from the exact one;
 //! * [`verify`]: all of it compared with OpenSubdiv;
@@ -29,6 +30,7 @@
 pub mod adaptive;
 pub mod cli;
 pub mod compare;
+pub mod curves;
 pub mod field;
 pub mod gpu;
 pub mod mesh;

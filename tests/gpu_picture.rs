@@ -2,7 +2,7 @@
 
 mod gpu_support;
 
-use catoptric::field::{Camera, Field, Light, Pattern, Projection, reflection_direction};
+use catoptric::field::{Camera, Light, Pattern, Point, Projection, reflection_direction};
 use catoptric::gpu::{
     Frame, Gpu, GpuError, NO_PATCH, Palette, Pipeline, Stage, State, SurfaceImage, TableLayout, Tables, View,
 };
@@ -60,13 +60,14 @@ fn reflection_agrees_with_f64() {
         let mut parallel = orthographic(perspective.clone());
         parallel.camera.eye = parallel.camera.target + (parallel.camera.eye - parallel.camera.target) * 1e4;
         for view in [perspective, parallel] {
-            let Field::Reflection(light) = view.field;
+            let light = view.field.light;
             let image = inspect(&tables, &view);
             let mut hits = 0;
             for i in covered(&image) {
                 let jet = surface.evaluate(image.patch[i] as usize, image.uv[i].map(f64::from));
                 let sight = view.camera.sight(jet.position);
-                let expected = view.field.value(jet.position, jet.normal, sight);
+                let point = Point { position: jet.position, normal: jet.normal, sight, curvature: None };
+                let expected = view.field.value(&point);
                 let ray = reflection_direction(jet.normal, sight).normalize();
                 let elevation = ray.dot(light.normal()).abs();
                 // The mirrored ray turns by the rounding of sight and twice that of the normal: 4e-6 radians is 12 times
@@ -138,7 +139,7 @@ fn patterns_agree_with_f64() {
     let (surface, tables) = upload(&mesh("pole_5.obj"));
     let palette = Palette { paint: [0.0; 3], tube: [1.0; 3], top: [0.0; 3], bottom: [0.0; 3] };
     let view = View { palette, ..view(&surface, dvec3(1.0, 2.0, 2.5)) };
-    let Field::Reflection(light) = view.field;
+    let light = view.field.light;
     let image = inspect(&tables, &view);
     for pattern in [Pattern::Stripes { width: 0.4 }, Pattern::Lattice { width: 0.3 }, Pattern::Circles { radius: 0.35 }]
     {

@@ -1,23 +1,44 @@
 //! Every WGSL entry point is valid, and every struct that Rust shares with WGSL has the same layout on both sides.
 
+use catoptric::field::{CurvatureKind, HighlightKind, Method, Mirrored, PlaneCurve};
 use catoptric::gpu::records::*;
 use catoptric::gpu::shader::{MODULES, Module};
 use naga::{TypeInner, front::wgsl, valid};
 use std::mem::offset_of;
 
-fn parse(module: &Module) -> naga::Module {
-    let source = module.source();
+/// One of each method.
+fn methods() -> Vec<Method> {
+    let curve = |text: &str| Method::Curve(PlaneCurve::Expression(text.parse().expect("an expression")));
+    vec![
+        Method::Reflection,
+        Method::Curve(PlaneCurve::Circle),
+        Method::Curve(PlaneCurve::Ellipse { aspect: 2.0 }),
+        curve(
+            "-x^2 + 3 * y ^ 0.5 / (1 + abs(x)) - max(x, min(y, pi)) * sin(x) + atan2(y, x) + pow(x, 2) - log(exp(tanh(floor(sign(cos(tan(sqrt(x))))))))",
+        ),
+        Method::RayDistance,
+        Method::Highlight(HighlightKind::Array),
+        Method::Sphere(Mirrored::Normal),
+        Method::Isophote,
+        Method::Curvature(CurvatureKind::Mean),
+        Method::Section,
+    ]
+}
+
+fn parse(module: &Module, method: &Method) -> naga::Module {
+    let source = module.source(method);
     wgsl::parse_str(&source).unwrap_or_else(|e| panic!("{}: {}", module.name, e.emit_to_string(&source)))
 }
 
 #[test]
 fn entry_points_are_valid() {
-    for module in MODULES {
-        let parsed = parse(&module);
+    for (module, method) in MODULES.iter().flat_map(|module| methods().into_iter().map(move |method| (module, method)))
+    {
+        let parsed = parse(module, &method);
         assert!(!parsed.entry_points.is_empty(), "{} has no entry point", module.name);
         let mut validator = valid::Validator::new(valid::ValidationFlags::all(), valid::Capabilities::empty());
         if let Err(error) = validator.validate(&parsed) {
-            panic!("{}: {}", module.name, error.emit_to_string(&module.source()));
+            panic!("{}: {}", module.name, error.emit_to_string(&module.source(&method)));
         }
     }
 }
@@ -25,7 +46,7 @@ fn entry_points_are_valid() {
 /// Offsets of the fields of a WGSL struct, and its size.
 fn layout(name: &str) -> (Vec<(String, usize)>, usize) {
     for module in MODULES {
-        for (_, ty) in parse(&module).types.iter() {
+        for (_, ty) in parse(&module, &Method::Reflection).types.iter() {
             if let (Some(found), TypeInner::Struct { members, span }) = (&ty.name, &ty.inner)
                 && found == name
             {
@@ -57,7 +78,10 @@ fn structs_have_the_same_layout_on_both_sides() {
     );
     same_layout!("SampleRecord", SampleRecord { uv, patch_id, padding });
     same_layout!("JetRecord", JetRecord { position, du, dv, normal });
-    same_layout!("Light", LightRecord { center, spacing, axis_x, half_x, axis_y, half_y, sight, from_eye });
+    same_layout!(
+        "Light",
+        LightRecord { center, spacing, axis_x, half_x, axis_y, half_y, sight, from_eye, kind, parameter, lines, unit }
+    );
     same_layout!(
         "Shade",
         ShadeRecord {
@@ -74,7 +98,7 @@ fn structs_have_the_same_layout_on_both_sides() {
             key,
             padding3,
             picture_scale,
-            padding4
+            range
         }
     );
     same_layout!("Lens", LensRecord { size, perspective, scale });

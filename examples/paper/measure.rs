@@ -157,10 +157,7 @@ impl Search<'_> {
     fn point(&self, at: &Place) -> Point {
         let camera = &self.view.camera;
         let (uv, here) = (DVec2::from_array(at.uv), self.jet(at));
-        let value = |uv: DVec2| {
-            let jet = self.stage.surface.evaluate(at.patch, uv.to_array());
-            self.view.field.value(jet.position, jet.normal, camera.sight(jet.position))
-        };
+        let value = |uv: DVec2| self.view.field.at(&self.stage.surface, camera, at.patch, uv.to_array());
         // One-sided differences, inwards: their error is of the order of the step.
         const STEP: f64 = 1e-6;
         let inwards = DVec2::select(uv.cmplt(DVec2::splat(0.5)), DVec2::splat(STEP), DVec2::splat(-STEP));

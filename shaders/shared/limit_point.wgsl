@@ -7,6 +7,8 @@ struct LimitPoint {
     dv: vec3f,
     // Zero where the surface has none.
     normal: vec3f,
+    // Mean and Gaussian; z: 1 where there are such. Computed for fields that read it.
+    curvature: vec3f,
 }
 
 fn unit_or_zero(v: vec3f) -> vec3f {
@@ -121,5 +123,11 @@ fn limit_point(record: vec4u, uv: vec2f) -> LimitPoint {
         position = vec3f(0.0);
         normal = point_texel(normal_texel(record)).xyz;
     }
-    return LimitPoint(position * scale.x, du * scale.y, dv * scale.y, normal);
+    var curvature = vec3f(0.0);
+    if READS_CURVATURE && !centre {
+        let second = second_derivatives(record, first, t);
+        // Second derivatives scale as du du / s, with s the scale of positions, so curvatures as 1 / s.
+        curvature = curvatures(du, dv, normal, second) * vec3f(1.0 / scale.x, 1.0 / (scale.x * scale.x), 1.0);
+    }
+    return LimitPoint(position * scale.x, du * scale.y, dv * scale.y, normal, curvature);
 }

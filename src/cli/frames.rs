@@ -80,7 +80,7 @@ impl FramesArgs {
         }
         if let Some(periods) = self.sweep_light {
             let period = view.pattern.period(view.light());
-            let crate::field::Field::Reflection(light) = &mut view.field;
+            let light = &mut view.field.light;
             light.center += light.axes[0] * (period * periods * progress(index, count, periods));
         }
         view

@@ -4,6 +4,7 @@ mod account;
 mod args;
 mod compare;
 mod eval;
+mod field;
 mod frames;
 mod info;
 mod patches;

@@ -3,14 +3,17 @@
 use super::account::Account;
 use super::args::size;
 use super::compare::Pair;
+use super::field::{FieldArgs, PatternArgs};
 use super::frames::FramesArgs;
 use super::patches::PatchesArgs;
 use super::rig::RigArgs;
 use super::settings::{made_by, mesh_digest};
 use super::{Failure, Steps, load, progress};
-use crate::field::{Pattern, Picture, Scout};
+use crate::field::{CurvatureKind, Method, Pattern, Scout};
 use crate::gpu::{Gpu, MAX_ENLARGE, MAX_PROXY_LEVEL, MAX_SAMPLES, Pipeline, Stage, TableLayout, Tables, View, tables};
-use crate::output::{Heat, Layers, check_writable, heat, read_exr_made_by, read_png_made_by, write_exr, write_png};
+use crate::output::{
+    Heat, Layers, Scale, check_writable, draw_legend, heat, read_exr_made_by, read_png_made_by, write_exr, write_png,
+};
 use crate::stam::LimitSurface;
 use clap::{Args, ValueEnum};
 use std::fs::File;
@@ -27,12 +30,10 @@ pub(super) struct RenderArgs {
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "1024x1024", value_parser = size)]
     pub(super) size: [u32; 2],
-    /// What is read off the surface
-    #[arg(long, value_enum, default_value = "reflection")]
-    pub(super) field: FieldName,
-    /// Shape of the lights: stripes, lattice, circles, or a picture
-    #[arg(long, value_name = "stripes|lattice|circles|FILE.png", default_value = "stripes")]
-    pub(super) pattern: String,
+    #[command(flatten)]
+    pub(super) field: FieldArgs,
+    #[command(flatten)]
+    pub(super) pattern: PatternArgs,
     /// How position and normal come to a pixel
     #[arg(long, value_enum, default_value = "exact")]
     pub(super) pipeline: PipelineName,
@@ -56,9 +57,6 @@ pub(super) struct RenderArgs {
     pub(super) samples: u32,
     #[command(flatten)]
     rig: RigArgs,
-    /// Part of the spacing that shines, 0 to 1 (of circles: their diameter)
-    #[arg(long, value_name = "PART", value_parser = part)]
-    light_width: Option<f64>,
     #[command(flatten)]
     frames: FramesArgs,
     /// Colour how exact each pixel is instead: its residual, or its Newton steps (.png, one sample a pixel)
@@ -70,12 +68,6 @@ pub(super) struct RenderArgs {
     /// Print how long each step took
     #[arg(long)]
     timings: bool,
-}
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub(super) enum FieldName {
-    /// Point of the light plane that the surface mirrors into the eye
-    Reflection,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -109,10 +101,6 @@ pub(super) enum PipelineName {
 fn enlargement(text: &str) -> Result<f64, String> {
     let factor = text.parse().ok().filter(|x| (1.0..=MAX_ENLARGE).contains(x));
     factor.ok_or_else(|| format!("give a number from 1 to {MAX_ENLARGE}"))
-}
-
-fn part(text: &str) -> Result<f64, String> {
-    text.parse().ok().filter(|x| (0.0..=1.0).contains(x)).ok_or("give a number from 0 to 1".to_owned())
 }
 
 /// What is written.
@@ -173,7 +161,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
         }
         check_writable(json)?;
     }
-    let pattern = pattern(args)?;
+    let pattern = args.pattern.read(&args.field.method)?;
     let bar = progress("drawing".to_owned());
     let mesh = account.time("read", || load(args.mesh.as_deref()))?;
     let surface =
@@ -198,7 +186,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
         return account.write(args.json.as_ref(), None, samples);
     }
     let gpu = account.time("adapter", Gpu::new)?;
-    let uploaded = args.patches.upload(&mesh, &surface, args.layout, &gpu, &mut account)?;
+    let uploaded = args.patches.upload(&mesh, &surface, args.layout(), &gpu, &mut account)?;
     let pair = match args.patches.compare {
         true => Some(Pair::new(args, &mesh, &surface, &gpu, &uploaded, &mut account)?),
         false => None,
@@ -235,6 +223,16 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     Ok(())
 }
 
+impl RenderArgs {
+    /// The layout of the tables: curvature is read from expanded ones.
+    fn layout(&self) -> TableLayout {
+        match self.layout {
+            TableLayout::Auto if self.field.method.reads_curvature() => TableLayout::Expanded,
+            layout => layout,
+        }
+    }
+}
+
 /// A picture to take.
 struct Shot<'a> {
     path: &'a Path,
@@ -264,8 +262,12 @@ impl Shot<'_> {
                 account.time("write", || write_png(path, seen.size, &heat(&seen, what), made_by))?;
             }
             (Format::Png, None) => {
-                let frame = gpu.render(tables, view)?;
+                let mut frame = gpu.render(tables, view)?;
                 account.add(&frame.timings);
+                if let Pattern::Heat { range: [low, high] } = view.pattern {
+                    let scale = Scale::linear(low as f32, high as f32);
+                    draw_legend(frame.size, &mut frame.rgba8, &scale, &legend(&view.field.method));
+                }
                 account.picture(frame.summary);
                 account.time("write", || write_png(path, frame.size, &frame.rgba8, made_by))?;
             }
@@ -283,10 +285,22 @@ impl Shot<'_> {
     }
 }
 
+/// What false colours of a field measure.
+fn legend(method: &Method) -> String {
+    let unit = match method {
+        Method::Sphere(_) | Method::Isophote => "degrees",
+        Method::Curvature(CurvatureKind::Gaussian) => "1 / world unit^2; magenta: undefined",
+        Method::Curvature(_) => "1 / world unit; magenta: undefined",
+        _ => "world units; magenta: undefined",
+    };
+    format!("{method}, {unit}")
+}
+
 fn view(args: &RenderArgs, scout: &Scout, pattern: Pattern) -> Result<View, Failure> {
-    let (camera, light) = args.rig.set_up(scout, args.size, args.mesh.is_none())?;
-    let mut view = View::new(camera, light);
-    view.pattern = pattern;
+    let (camera, field) = args.rig.set_up(scout, args.size, args.mesh.is_none(), &args.field)?;
+    let mut view = View::new(camera, field.light);
+    view.pattern = PatternArgs::fitted(pattern, scout, &field, &camera);
+    view.field = field;
     view.proxy_level = args.proxy_level;
     view.samples = args.samples;
     view.pipeline = match args.pipeline {
@@ -301,27 +315,5 @@ fn view(args: &RenderArgs, scout: &Scout, pattern: Pattern) -> Result<View, Fail
         StageName::Fragment => Stage::Fragment,
         StageName::Compute => Stage::Compute,
     };
-    match args.field {
-        FieldName::Reflection => Ok(view),
-    }
-}
-
-fn pattern(args: &RenderArgs) -> Result<Pattern, Failure> {
-    let width = |default: f64| args.light_width.unwrap_or(default);
-    match args.pattern.as_str() {
-        "stripes" => Ok(Pattern::Stripes { width: width(0.42) }),
-        "lattice" => Ok(Pattern::Lattice { width: width(0.2) }),
-        "circles" => Ok(Pattern::Circles { radius: width(0.6) / 2.0 }),
-        path => picture(Path::new(path)),
-    }
-}
-
-fn picture(path: &Path) -> Result<Pattern, Failure> {
-    let bad = |what: String| {
-        Failure::Bad(format!("{}: {what}; give stripes, lattice, circles or a PNG file", path.display()))
-    };
-    let reader = image::ImageReader::open(path).map_err(|e| bad(format!("cannot read the pattern ({e})")))?;
-    let reader = reader.with_guessed_format().map_err(|e| bad(format!("cannot read the pattern ({e})")))?;
-    let picture = reader.decode().map_err(|e| bad(format!("not a picture we read ({e})")))?.to_rgba8();
-    Ok(Pattern::Picture(Picture { size: [picture.width(), picture.height()], rgba8: picture.into_raw() }))
+    Ok(view)
 }

@@ -2,7 +2,8 @@
 
 use super::Failure;
 use super::args::vector;
-use crate::field::{Camera, DEFAULT_FOV, Light, Projection, Scout, sample_rig};
+use super::field::FieldArgs;
+use crate::field::{Camera, DEFAULT_FOV, Field, Light, Method, Projection, Scout, sample_rig};
 use crate::gpu::MAX_FOV;
 use clap::{Args, ValueEnum};
 use glam::DVec3;
@@ -79,24 +80,32 @@ impl RigArgs {
         }
     }
 
-    /// Camera and light, fitted to a surface where flags do not say; `is_sample`: to the built-in one.
-    pub(super) fn set_up(&self, scout: &Scout, size: [u32; 2], is_sample: bool) -> Result<(Camera, Light), Failure> {
+    /// Camera and field, fitted to a surface where flags do not say; `is_sample`: to the built-in one.
+    pub(super) fn set_up(
+        &self,
+        scout: &Scout,
+        size: [u32; 2],
+        is_sample: bool,
+        field: &FieldArgs,
+    ) -> Result<(Camera, Field), Failure> {
         let sample = (is_sample && self.up.is_none()).then(sample_rig);
         let camera = self.camera(scout, size, sample.map(|(direction, _)| direction));
-        let mut light = sample.map_or_else(|| scout.light(&camera), |(_, light)| light);
+        let light = sample.map(|(_, light)| light).filter(|_| field.method == Method::Reflection);
+        let mut field = field.field(scout, &camera, light);
+        let light = &mut field.light;
 
         let given = [self.light_center, self.light_normal, self.light_lines];
         if given.iter().any(Option::is_some) {
             let fitted = [light.center, light.normal(), light.axes[1]];
             let [center, normal, lines] = std::array::from_fn(|i| given[i].unwrap_or(fitted[i]));
             self.check_light(normal, lines)?;
-            light = Light::new(center, normal, lines, light.spacing);
+            *light = Light { half: light.half, ..Light::new(center, normal, lines, light.spacing) };
         }
         light.spacing = self.light_spacing.unwrap_or(light.spacing);
         if let Some(size) = self.light_size {
             light.half = size.map(|side| side / 2.0);
         }
-        Ok((camera, light))
+        Ok((camera, field))
     }
 
     /// The camera, which looks against `direction` where flags do not say, by default in three-quarter view.

@@ -38,18 +38,19 @@ pub(super) fn made_by(args: &RenderArgs, mesh: u64, view: &View) -> String {
         }
     }
     [("eye", eye), ("target", target), ("up", up)].into_iter().for_each(|(flag, v)| add(flag, vector(v)));
-    add("field", value_name(&args.field));
+    add("field", view.field.method.to_string());
     let directions = [("light-center", light.center), ("light-normal", light.normal()), ("light-lines", light.axes[1])];
     directions.into_iter().for_each(|(flag, v)| add(flag, vector(v)));
     add("light-spacing", light.spacing.to_string());
     if light.half.iter().all(|half| half.is_finite()) {
         add("light-size", format!("{},{}", 2.0 * light.half[0], 2.0 * light.half[1]));
     }
-    add("pattern", name(Path::new(&args.pattern)));
+    add("pattern", args.pattern.name(&view.pattern));
     match &view.pattern {
         Pattern::Stripes { width } | Pattern::Lattice { width } => add("light-width", width.to_string()),
         Pattern::Circles { radius } => add("light-width", (2.0 * radius).to_string()),
-        Pattern::Picture(_) => {}
+        Pattern::Band { radius } => add("light-width", (2.0 * radius).to_string()),
+        Pattern::Heat { .. } | Pattern::Picture(_) => {}
     }
     add("pipeline", value_name(&args.pipeline));
     if view.enlarge != 1.0 {

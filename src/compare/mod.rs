@@ -73,10 +73,7 @@ impl Line {
         /// Pixels over which the second derivative is taken.
         const REACH: f64 = 0.5;
         let camera = &view.camera;
-        let value = |uv: DVec2| {
-            let jet = surface.evaluate(patch, uv.to_array());
-            Some(view.field.value(jet.position, jet.normal, camera.sight(jet.position))?.x)
-        };
+        let value = |uv: DVec2| Some(view.field.at(surface, camera, patch, uv.to_array())?.x);
         let here = surface.evaluate(patch, uv.to_array());
         let screen = camera.screen(here.position, [here.du, here.dv])?;
         let start = value(uv)?;

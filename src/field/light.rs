@@ -33,6 +33,12 @@ impl Light {
         self.axes[0].cross(self.axes[1])
     }
 
+    /// Coordinates of a point, or of its foot on the plane.
+    pub fn coordinates(&self, point: DVec3) -> glam::DVec2 {
+        let d = point - self.center;
+        glam::DVec2::new(d.dot(self.axes[0]), d.dot(self.axes[1]))
+    }
+
     /// Whether the light's plane coordinates (world units) lie within its extents.
     pub fn contains(&self, point: glam::DVec2) -> bool {
         point.x.abs() <= self.half[0] && point.y.abs() <= self.half[1]

@@ -30,6 +30,17 @@ pub enum Pattern {
         /// Radius, 0 to 0.5.
         radius: f64,
     },
+    /// A single tube round x = 0, this many periods to each side.
+    Band {
+        /// Half its width in periods, 0 or more.
+        radius: f64,
+    },
+    /// False colours over the first coordinate, from dark blue over green to yellow; where the ends have different signs, from blue
+    /// over white, at 0, to red. The surface is magenta where the field is undefined.
+    Heat {
+        /// Values at the ends of the scale, in units of the field.
+        range: [f64; 2],
+    },
     /// A picture, stretched over the light's extents, or repeated every [`Pattern::PICTURE_PERIODS`] periods of an
     /// infinite light.
     Picture(Picture),
@@ -51,6 +62,9 @@ impl Pattern {
             Pattern::Stripes { width } => cell(p.x).abs() <= width * 0.5,
             Pattern::Lattice { width } => cell(p.x).abs().min(cell(p.y).abs()) <= width * 0.5,
             Pattern::Circles { radius } => dvec2(cell(p.x), cell(p.y)).length() <= *radius,
+            Pattern::Band { radius } => p.x.abs() <= *radius,
+            // Colours are no light.
+            Pattern::Heat { .. } => false,
             Pattern::Picture(picture) => return picture.texel(point * self.picture_scale(light) + 0.5),
         };
         if on { DVec3::ONE } else { DVec3::ZERO }

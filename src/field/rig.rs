@@ -1,7 +1,7 @@
 //! Camera and light that suit a surface, found by looking at it.
 
-use super::{Camera, DEFAULT_FOV, Light, reflection, reflection_direction};
-use crate::stam::LimitSurface;
+use super::{Camera, DEFAULT_FOV, Field, HighlightKind, Light, Method, Point, reflection_direction};
+use crate::stam::{Curvature, LimitSurface};
 use glam::DVec3;
 
 /// A surface as the automatic fit sees it: scattered limit points with normals.
@@ -11,6 +11,7 @@ pub struct Scout {
     outline: Vec<DVec3>,
     points: Vec<DVec3>,
     normals: Vec<DVec3>,
+    curvatures: Vec<Option<Curvature>>,
     /// Area that each point stands for.
     areas: Vec<f64>,
     bounds: [DVec3; 2],
@@ -33,22 +34,25 @@ impl Scout {
     pub fn new(surface: &LimitSurface) -> Option<Scout> {
         let bounds = surface.bounds()?;
         let stride = (surface.ptex_count() * GRID * GRID).div_ceil(BUDGET).max(1);
-        let (mut outline, mut points, mut normals, mut areas) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let (mut outline, mut points, mut normals) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut curvatures, mut areas) = (Vec::new(), Vec::new());
         for ptex in (0..surface.ptex_count() as u32).step_by(stride) {
-            let at = |u: f64, v: f64| surface.evaluate_ptex(ptex, [u, v]).map(|(_, jet)| jet);
+            let at = |u: f64, v: f64| surface.evaluate_second_ptex(ptex, [u, v]).map(|(_, jet)| jet);
             for k in 0..GRID * GRID {
                 let [u, v] = [k % GRID, k / GRID].map(|i| (i as f64 + 0.5) / GRID as f64);
-                if let Some(jet) = at(u, v) {
+                if let Some(second) = at(u, v) {
+                    let jet = second.first;
+                    curvatures.push(second.curvature());
                     points.push(jet.position);
                     normals.push(jet.normal);
                     areas.push(jet.du.cross(jet.dv).length());
                 }
             }
             let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
-            outline.extend(corners.iter().filter_map(|&(u, v)| at(u, v)).map(|jet| jet.position));
+            outline.extend(corners.iter().filter_map(|&(u, v)| at(u, v)).map(|jet| jet.first.position));
         }
         outline.extend(&points);
-        Some(Scout { outline, points, normals, areas, bounds })
+        Some(Scout { outline, points, normals, curvatures, areas, bounds })
     }
 
     /// A camera that sees all of the surface from `direction` (from the object to the eye), vertical field of view `fov`
@@ -72,6 +76,97 @@ impl Scout {
         self.camera_from(size, up, Camera::three_quarter(self.bounds, up), DEFAULT_FOV)
     }
 
+    /// A field by a method, with a light that suits it and the view.
+    ///
+    /// What reads normals takes them from where most of the visible surface faces; sections run across the longest side. Angles are
+    /// ten degrees apart, other values such that the middle half of the visible surface has five lines or so.
+    pub fn field(&self, method: &Method, camera: &Camera) -> Field {
+        /// Distance of lights above the surface in diagonals.
+        const DISTANCE: f64 = 4.0;
+        let middle = (self.bounds[0] + self.bounds[1]) * 0.5;
+        let extent = self.bounds[1] - self.bounds[0];
+        let diagonal = extent.length().max(f64::MIN_POSITIVE);
+        let longest = self.longest();
+        let seen = self.visible(camera);
+        let facing: DVec3 = seen.iter().map(|&(i, w)| self.normals[i] * w).sum();
+        let facing = facing.try_normalize().unwrap_or(DVec3::Z);
+        let light = match method {
+            Method::Reflection | Method::Curve(_) | Method::RayDistance => self.light(camera),
+            Method::Highlight(_) => Light::new(middle + facing * (DISTANCE * diagonal), -facing, longest, diagonal),
+            Method::Isophote | Method::Curvature(_) => Light::new(middle, -facing, longest, 10.0),
+            Method::Sphere(_) => Light::new(middle, -camera.up.normalize_or(DVec3::Z), longest, 10.0),
+            Method::Section => {
+                // Lines x = k lie across the longest side, in planes that hold the direction up.
+                let up = camera.up.normalize_or(DVec3::Z);
+                let across = up.cross(longest).try_normalize().unwrap_or_else(|| longest.any_orthonormal_vector());
+                Light::new(middle, longest.cross(across), across, diagonal)
+            }
+        };
+        let mut field = Field { light, method: method.clone() };
+        let is_fitted = matches!(method, Method::Sphere(_) | Method::Isophote | Method::Reflection);
+        if !is_fitted {
+            // Distances to the nearest line depend on where the lines are.
+            let plain = match method {
+                Method::RayDistance => Field { method: Method::Reflection, ..field.clone() },
+                Method::Highlight(HighlightKind::Nearest) => {
+                    Field { method: Method::Highlight(HighlightKind::Array), ..field.clone() }
+                }
+                _ => field.clone(),
+            };
+            let [low, high] = self.quantiles(&plain, camera, [0.25, 0.75]);
+            let spacing = (high - low) / 5.0;
+            if spacing > 0.0 && spacing.is_finite() {
+                field.light.spacing = spacing;
+            }
+        }
+        field
+    }
+
+    /// The ends of a scale for false colours: what all but a fiftieth of the visible surface has on each side; as far from 0 on
+    /// both sides where there are both signs.
+    pub fn range(&self, field: &Field, camera: &Camera) -> [f64; 2] {
+        let [low, high] = self.quantiles(field, camera, [0.02, 0.98]);
+        if low < 0.0 && high > 0.0 {
+            let most = high.max(-low);
+            return [-most, most];
+        }
+        if low < high { [low, high] } else { [low - 0.5, low + 0.5] }
+    }
+
+    /// Quantiles of a field's first coordinate over the visible surface; zeros where it has no values.
+    fn quantiles(&self, field: &Field, camera: &Camera, parts: [f64; 2]) -> [f64; 2] {
+        let value = |&(i, w): &(usize, f64)| {
+            let position = self.points[i];
+            let point = Point {
+                position,
+                normal: self.normals[i],
+                sight: camera.sight(position),
+                curvature: self.curvatures[i],
+            };
+            Some((field.value(&point)?.x, w))
+        };
+        let mut values: Vec<(f64, f64)> = self.visible(camera).iter().filter_map(value).collect();
+        values.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let total: f64 = values.iter().map(|(_, w)| w).sum();
+        parts.map(|part| {
+            let mut sum = 0.0;
+            let reached = values.iter().find(|(_, w)| {
+                sum += w;
+                sum >= part * total
+            });
+            reached.map_or(0.0, |(x, _)| *x)
+        })
+    }
+
+    /// The axis along which the object is longest.
+    fn longest(&self) -> DVec3 {
+        match self.bounds[1] - self.bounds[0] {
+            e if e.x >= e.y && e.x >= e.z => DVec3::X,
+            e if e.y >= e.z => DVec3::Y,
+            _ => DVec3::Z,
+        }
+    }
+
     /// An infinite plane of tubes, placed so that as much as possible of what `camera` sees mirrors it, in doubt behind the
     /// eye and above it; its tubes run along the longest side of the object (on a car they flow from bonnet to boot). The
     /// spacing follows from the mirrored points themselves, so that flat and round objects show as many lines. The
@@ -86,31 +181,10 @@ impl Scout {
         let diagonal = extent.length().max(f64::MIN_POSITIVE);
         let seen = self.visible(camera);
         let direction = self.lightest(&seen, camera);
-        let longest = match extent {
-            e if e.x >= e.y && e.x >= e.z => DVec3::X,
-            e if e.y >= e.z => DVec3::Y,
-            _ => DVec3::Z,
-        };
+        let longest = self.longest();
         let mut light = Light::new(middle + direction * (DISTANCE * diagonal), -direction, longest, diagonal);
-        let mut hits: Vec<(f64, f64)> = seen
-            .iter()
-            .filter_map(|&(i, w)| {
-                let (point, normal) = (self.points[i], self.normals[i]);
-                Some((reflection(&light, point, normal, camera.sight(point))?.x, w))
-            })
-            .collect();
-        hits.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let total: f64 = hits.iter().map(|(_, w)| w).sum();
-        let quantile = |part: f64| {
-            let mut sum = 0.0;
-            hits.iter()
-                .find(|(_, w)| {
-                    sum += w;
-                    sum >= part * total
-                })
-                .map_or(0.0, |(x, _)| *x)
-        };
-        let spread = quantile(0.75) - quantile(0.25);
+        let [low, high] = self.quantiles(&Field::reflection(light), camera, [0.25, 0.75]);
+        let spread = high - low;
         if spread > 0.0 && spread.is_finite() {
             // A plane object mirrors less than a tube: then the spacing is not allowed to vanish.
             light.spacing = (spread / TUBES).max(1e-3 * diagonal);

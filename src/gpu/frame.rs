@@ -72,7 +72,7 @@ pub struct SurfaceImage {
     pub position: Vec<DVec3>,
     /// Unit normal of the parametrisation (du x dv).
     pub normal: Vec<[f32; 3]>,
-    /// Field value in world units, as [`Field::value`](crate::field::Field::value).
+    /// Field value, as [`Field::value`](crate::field::Field::value).
     pub field: Vec<Option<DVec2>>,
     /// How each pixel came to its point.
     pub certificate: Vec<Certificate>,
@@ -132,12 +132,12 @@ fn draw<T: bytemuck::Pod>(
     view: &View,
     colour: Colour,
 ) -> Result<Drawn<T>, GpuError> {
-    view.check()?;
+    view.check(tables)?;
     if view.pipeline == Pipeline::Points {
         return paper::draw(device, passes, tables, view, colour);
     }
     let mut timings = Timings::default();
-    timings.time("compile", || passes.prepare(device, view.pipeline, colour));
+    timings.time("compile", || passes.prepare(device, view, colour));
     let scene = timings.time("scene", || Scene::new(device, tables, view))?;
     let size = view.camera.size;
     let mut summary = (view.pipeline == Pipeline::Exact).then(Summary::default);
@@ -168,7 +168,7 @@ pub(super) fn inspect(
     tables: &Tables,
     view: &View,
 ) -> Result<SurfaceImage, GpuError> {
-    view.check()?;
+    view.check(tables)?;
     if view.pipeline == Pipeline::Points {
         return paper::inspect(device, passes, tables, view);
     }
@@ -260,6 +260,7 @@ pub(super) fn read_tile(
 ) -> Result<(), GpuError> {
     let tables = scene.tables;
     let (size, unit) = (image.size, tables.unit());
+    let scale = scene.view.field.method.scale(unit);
     let ids: Vec<u32> = device.read_texture(&visible.patch)?;
     let patch: Vec<u32> = ids.iter().map(|id| id.wrapping_sub(1)).collect();
     paste(&mut image.patch, size, &patch, tile.origin, tile.size);
@@ -275,7 +276,7 @@ pub(super) fn read_tile(
     let normal: Vec<[f32; 3]> = normal.iter().map(|n| [n[0], n[1], n[2]]).collect();
     paste(&mut image.normal, size, &normal, tile.origin, tile.size);
     let field: Vec<[f32; 4]> = device.read_texture(&surface.field)?;
-    let value = |f: &[f32; 4]| (f[2] > 0.0).then(|| DVec2::new(f64::from(f[0]), f64::from(f[1])) * unit);
+    let value = |f: &[f32; 4]| (f[2] > 0.0).then(|| DVec2::new(f64::from(f[0]), f64::from(f[1])) * scale);
     paste(&mut image.field, size, &field.iter().map(value).collect::<Vec<_>>(), tile.origin, tile.size);
     let certificate: Vec<Certificate> = match &visible.certificate {
         Some(texture) => device.read_texture(texture)?.into_iter().map(Certificate::from_bits).collect(),

@@ -17,6 +17,7 @@ mod blocks;
 mod certificate;
 mod charts;
 mod device;
+mod fields;
 mod frame;
 mod paper;
 mod passes;

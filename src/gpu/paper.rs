@@ -30,7 +30,7 @@ pub(super) fn draw<T: bytemuck::Pod>(
 ) -> Result<Drawn<T>, GpuError> {
     let mut timings = Timings::default();
     timings.time("compile", || {
-        passes.prepare(device, view.pipeline, colour);
+        passes.prepare(device, view, colour);
         passes::rectangle::pipeline(passes, device);
         passes::points::position_pipeline(passes, device);
         passes::points::pipeline(passes, device);

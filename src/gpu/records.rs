@@ -162,7 +162,7 @@ pub struct JetRecord {
     pub padding3: f32,
 }
 
-/// `Light`, shaders/field/reflection.wgsl.
+/// `Light`, shaders/field/light.wgsl.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct LightRecord {
@@ -182,6 +182,14 @@ pub struct LightRecord {
     pub sight: [f32; 3],
     /// How much of the position relative to the viewpoint the line of sight takes: 1 in perspective, else 0.
     pub from_eye: f32,
+    /// Which kind of its method a field is.
+    pub kind: u32,
+    /// A number of the method's.
+    pub parameter: f32,
+    /// Distance between light lines.
+    pub lines: f32,
+    /// World units in 1.
+    pub unit: f32,
 }
 
 /// `Shade`, shaders/shade.wgsl.
@@ -214,6 +222,6 @@ pub struct ShadeRecord {
     pub padding3: f32,
     /// From plane coordinates to texture coordinates.
     pub picture_scale: [f32; 2],
-    /// Zero.
-    pub padding4: [f32; 2],
+    /// Ends of the scale of false colours, in the shader's units of the field.
+    pub range: [f32; 2],
 }

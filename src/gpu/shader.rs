@@ -4,6 +4,7 @@ use super::NO_PATCH;
 use super::charts::BAND;
 use super::records::ChartRecord;
 use super::tables::TABLE_LEVELS;
+use crate::field::{Method, colours};
 use crate::stam::LEVELS;
 
 /// Kind of a patch of 16 points.
@@ -20,6 +21,10 @@ pub const PATTERN_LATTICE: u32 = 1;
 pub const PATTERN_CIRCLES: u32 = 2;
 /// A picture.
 pub const PATTERN_PICTURE: u32 = 3;
+/// One stripe.
+pub const PATTERN_BAND: u32 = 4;
+/// False colours.
+pub const PATTERN_HEAT: u32 = 5;
 /// Invocations in a workgroup of the compute passes.
 pub const WORKGROUP: u32 = 64;
 /// Highest level n with 2^-n a normal f32: the number of scales of a class.
@@ -91,16 +96,26 @@ pub struct Module {
 }
 
 impl Module {
-    /// The whole source, constants first.
-    pub fn source(&self) -> String {
-        self.source_for(&Variant { block_rows: BLOCK_ROWS, has_tail: true, has_gregory: true })
+    /// The whole source, constants first, for a field and for all that tables may hold.
+    pub fn source(&self, method: &Method) -> String {
+        // Levels that are given by picked points have no second derivatives.
+        let variant = Variant { block_rows: BLOCK_ROWS, has_tail: !method.reads_curvature(), has_gregory: true };
+        self.source_for(&variant, &method.wgsl())
     }
 
-    /// The same for other tables.
-    pub(super) fn source_for(&self, variant: &Variant) -> String {
+    /// Whether it depends on the field.
+    pub(super) fn reads_field(&self) -> bool {
+        self.files.contains(&FIELD)
+    }
+
+    /// The same for other tables, and the source of a field.
+    pub(super) fn source_for(&self, variant: &Variant, field: &str) -> String {
         let mut source = constants(variant);
-        for file in self.files {
-            source.push_str(file);
+        if !self.reads_field() {
+            source.push_str("const READS_CURVATURE = false;\n");
+        }
+        for &file in self.files {
+            source.push_str(if file == FIELD { field } else { file });
         }
         source
     }
@@ -117,12 +132,16 @@ const FULLSCREEN: &str = include_str!("../../shaders/shared/fullscreen.wgsl");
 const VISIBILITY_PASS: &str = include_str!("../../shaders/visibility.wgsl");
 const SURFACE: &str = include_str!("../../shaders/shared/surface.wgsl");
 const OCTAHEDRAL: &str = include_str!("../../shaders/shared/octahedral.wgsl");
+const HEAT: &str = include_str!("../../shaders/shared/heat.wgsl");
 const PATTERN: &str = include_str!("../../shaders/shared/pattern.wgsl");
-const REFLECTION: &str = include_str!("../../shaders/field/reflection.wgsl");
+const CURVATURE: &str = include_str!("../../shaders/shared/curvature.wgsl");
+const LIGHT: &str = include_str!("../../shaders/field/light.wgsl");
+/// Stands for the source of a field ([`Method::wgsl`]).
+const FIELD: &str = "field";
 
 /// Rasterises the proxy.
 pub const VISIBILITY: Module =
-    Module { name: "visibility", files: &[RECORDS, TABLES, BASIS, GREGORY, LIMIT_POINT, VISIBILITY_PASS] };
+    Module { name: "visibility", files: &[RECORDS, TABLES, BASIS, GREGORY, CURVATURE, LIMIT_POINT, VISIBILITY_PASS] };
 /// What the proxy covers.
 pub const RECTANGLE: Module = Module {
     name: "rectangle",
@@ -131,6 +150,7 @@ pub const RECTANGLE: Module = Module {
         TABLES,
         BASIS,
         GREGORY,
+        CURVATURE,
         LIMIT_POINT,
         VISIBILITY_PASS,
         include_str!("../../shaders/rectangle.wgsl"),
@@ -144,6 +164,7 @@ pub const POINTS: Module = Module {
         TABLES,
         BASIS,
         GREGORY,
+        CURVATURE,
         LIMIT_POINT,
         VISIBILITY_PASS,
         FULLSCREEN,
@@ -158,8 +179,10 @@ pub const LIMIT: Module = Module {
         TABLES,
         BASIS,
         GREGORY,
+        CURVATURE,
         LIMIT_POINT,
-        REFLECTION,
+        LIGHT,
+        FIELD,
         OCTAHEDRAL,
         SURFACE,
         FULLSCREEN,
@@ -169,12 +192,12 @@ pub const LIMIT: Module = Module {
 /// Interpolated surface per pixel.
 pub const POLYGON: Module = Module {
     name: "polygon",
-    files: &[RECORDS, REFLECTION, OCTAHEDRAL, SURFACE, FULLSCREEN, include_str!("../../shaders/polygon.wgsl")],
+    files: &[RECORDS, LIGHT, FIELD, OCTAHEDRAL, SURFACE, FULLSCREEN, include_str!("../../shaders/polygon.wgsl")],
 };
 /// Colour.
 pub const SHADE: Module = Module {
     name: "shade",
-    files: &[REFLECTION, OCTAHEDRAL, PATTERN, FULLSCREEN, include_str!("../../shaders/shade.wgsl")],
+    files: &[LIGHT, OCTAHEDRAL, PATTERN, HEAT, FULLSCREEN, include_str!("../../shaders/shade.wgsl")],
 };
 /// Linear sum to sRGB.
 pub const RESOLVE: Module =
@@ -182,7 +205,7 @@ pub const RESOLVE: Module =
 /// Limit at samples.
 pub const EVALUATE: Module = Module {
     name: "evaluate",
-    files: &[RECORDS, TABLES, BASIS, GREGORY, LIMIT_POINT, include_str!("../../shaders/evaluate.wgsl")],
+    files: &[RECORDS, TABLES, BASIS, GREGORY, CURVATURE, LIMIT_POINT, include_str!("../../shaders/evaluate.wgsl")],
 };
 
 /// Samples solved on the host.
@@ -204,6 +227,8 @@ fn constants(variant: &Variant) -> String {
         ("PATTERN_LATTICE", PATTERN_LATTICE),
         ("PATTERN_CIRCLES", PATTERN_CIRCLES),
         ("PATTERN_PICTURE", PATTERN_PICTURE),
+        ("PATTERN_BAND", PATTERN_BAND),
+        ("PATTERN_HEAT", PATTERN_HEAT),
         ("WORKGROUP", WORKGROUP),
         ("TILE_SIDE", TILE_SIDE),
         ("TABLE_WIDTH", TABLE_WIDTH),
@@ -220,6 +245,14 @@ fn constants(variant: &Variant) -> String {
     ];
     let mut text: String = counts.iter().map(|(name, value)| format!("const {name} = {value}u;\n")).collect();
     text.push_str(&format!("const PUSH = {PUSH:?};\nconst SETTLED = {SETTLED:?};\nconst BAND = {BAND:?};\n"));
+    let vector = |[r, g, b]: [u8; 3]| {
+        let [r, g, b] = [r, g, b].map(|c| f32::from(c) / 255.0);
+        format!("vec3f({r:?}, {g:?}, {b:?})")
+    };
+    for (name, ramp) in [("HEAT_COLOURS", colours::HEAT), ("DIVERGING_COLOURS", colours::DIVERGING)] {
+        text.push_str(&format!("const {name} = array({});\n", ramp.map(vector).join(", ")));
+    }
+    text.push_str(&format!("const UNDEFINED_COLOUR = {};\n", vector(colours::UNDEFINED)));
     text.push_str(&format!("const HAS_TAIL = {};\nconst HAS_GREGORY = {};\n", variant.has_tail, variant.has_gregory));
     text
 }

@@ -1,7 +1,10 @@
 //! What to draw, and its f64-composed records for the shaders.
 
+use super::fields::FieldNumbers;
 use super::records::{FrameRecord, LightRecord, ResolveRecord, ShadeRecord};
-use super::shader::{PATTERN_CIRCLES, PATTERN_LATTICE, PATTERN_PICTURE, PATTERN_STRIPES};
+use super::shader::{
+    Content, PATTERN_BAND, PATTERN_CIRCLES, PATTERN_HEAT, PATTERN_LATTICE, PATTERN_PICTURE, PATTERN_STRIPES,
+};
 use super::{GpuError, Tables};
 use crate::field::{Camera, Field, Light, Pattern, Projection};
 use glam::DVec3;
@@ -107,7 +110,7 @@ impl View {
     pub fn new(camera: Camera, light: Light) -> View {
         View {
             camera,
-            field: Field::Reflection(light),
+            field: Field::reflection(light),
             pattern: Pattern::Stripes { width: 0.42 },
             pipeline: Pipeline::default(),
             stage: Stage::default(),
@@ -120,14 +123,15 @@ impl View {
 
     /// The light plane of the field.
     pub fn light(&self) -> &Light {
-        match &self.field {
-            Field::Reflection(light) => light,
-        }
+        &self.field.light
     }
 
     /// Refuses what cannot be drawn.
-    pub(super) fn check(&self) -> Result<(), GpuError> {
+    pub(super) fn check(&self, tables: &Tables) -> Result<(), GpuError> {
         let fail = |message: String| Err(GpuError::View(message));
+        if self.field.method.reads_curvature() && tables.content() == Content::Tails {
+            return fail("curvature is read from tables in the expanded layout only (--tables expanded)".into());
+        }
         let Camera { eye, target, up, projection, size } = self.camera;
         if size.iter().any(|n| !(1..=MAX_SIZE).contains(n)) {
             return fail(format!("picture size {}x{}: each side must be 1 to {MAX_SIZE} pixels", size[0], size[1]));
@@ -284,24 +288,26 @@ impl View {
 
     /// The light relative to the viewpoint, and lines of sight.
     pub(super) fn light_record(&self, tables: &Tables) -> LightRecord {
-        /// Stands for an infinite extent: finite, so that shader arithmetic stays defined.
-        const ENDLESS: f64 = 1e30;
         let light = self.light();
         let unit = tables.unit();
-        let half = light.half.map(|h| (h / unit).min(ENDLESS) as f32);
+        let FieldNumbers { kind, parameter, spacing, half, lines } = FieldNumbers::new(&self.field, unit);
         let (sight, from_eye) = match self.camera.is_orthographic() {
             true => (self.camera.axes().forward, 0.0),
             false => (DVec3::ZERO, 1.0),
         };
         LightRecord {
             center: ((light.center - self.viewpoint(tables)) / unit).as_vec3().to_array(),
-            spacing: (light.spacing / unit) as f32,
+            spacing,
             axis_x: light.axes[0].as_vec3().to_array(),
             half_x: half[0],
             axis_y: light.axes[1].as_vec3().to_array(),
             half_y: half[1],
             sight: sight.as_vec3().to_array(),
             from_eye,
+            kind,
+            parameter,
+            lines,
+            unit: unit as f32,
         }
     }
 
@@ -311,7 +317,14 @@ impl View {
             Pattern::Stripes { width } => (PATTERN_STRIPES, *width),
             Pattern::Lattice { width } => (PATTERN_LATTICE, *width),
             Pattern::Circles { radius } => (PATTERN_CIRCLES, *radius),
+            Pattern::Band { radius } => (PATTERN_BAND, 2.0 * radius),
+            Pattern::Heat { .. } => (PATTERN_HEAT, 0.0),
             Pattern::Picture(_) => (PATTERN_PICTURE, 0.0),
+        };
+        let scale = self.field.method.scale(tables.unit());
+        let range = match self.pattern {
+            Pattern::Heat { range } => range.map(|end| (end / scale) as f32),
+            _ => [0.0; 2],
         };
         let Palette { paint, tube, top, bottom } = self.palette;
         let axes = self.camera.axes();
@@ -330,8 +343,8 @@ impl View {
             padding2: 0.0,
             key: key.as_vec3().to_array(),
             padding3: 0.0,
-            picture_scale: (self.pattern.picture_scale(self.light()) * tables.unit()).as_vec2().to_array(),
-            padding4: [0.0; 2],
+            picture_scale: (self.pattern.picture_scale(self.light()) * scale).as_vec2().to_array(),
+            range,
         }
     }
 

@@ -8,9 +8,9 @@ use crate::statistics::{Spread, short};
 
 /// Of displacements, in pixels: a hundredth of a pixel is what our own pipeline is held to; beyond ten pixels a line is
 /// another one.
-pub const LINES_PX: Scale = Scale { least: 1e-3, most: 10.0 };
+pub const LINES_PX: Scale = Scale::logarithmic(1e-3, 10.0);
 /// Of angles, in degrees: 1.4e-3 degrees move a line by some 1/100 pixel.
-pub const NORMALS_DEG: Scale = Scale { least: 1e-4, most: 10.0 };
+pub const NORMALS_DEG: Scale = Scale::logarithmic(1e-4, 10.0);
 
 /// The exact surface, the other one, the displacement of the lines and the angle between the normals. `name`: of the other
 /// surface; `seen`: what its pixels see.

@@ -11,8 +11,7 @@ pub use comparison::{LINES_PX, NORMALS_DEG, comparison_panels};
 pub use exr::{Layers, NO_FACE, read_exr_made_by, world_to_camera, world_to_ndc, write_exr};
 pub use heat::{Heat, Scale, heat, heat_of};
 pub use png::{png_bytes, read_png_made_by, write_png};
-pub(crate) use sheet::power_of_ten;
-pub use sheet::{Panel, sheet};
+pub use sheet::{Panel, draw_legend, sheet};
 pub use whole::{OutputError, WriteSeek, check_writable, discard_unfinished, write_whole};
 
 /// Keyword of the PNG text and name of the EXR attribute that say how a picture was made.

@@ -1,6 +1,6 @@
 //! Pictures side by side, with captions and legends.
 
-use super::heat::{Scale, ramp};
+use super::heat::Scale;
 use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_width};
 
 /// One of the pictures of a [`sheet`].
@@ -49,6 +49,25 @@ pub fn sheet(size: [u32; 2], panels: &[Panel]) -> ([u32; 2], Vec<u8>) {
     (total.map(|n| n as u32), page.pixels.into_flattened())
 }
 
+/// Draws a legend into the lower left corner of a picture (sRGB RGBA, 4 bytes a pixel), where there is room for one.
+pub fn draw_legend(size: [u32; 2], rgba8: &mut Vec<u8>, scale: &Scale, what: &str) {
+    /// Widest legend.
+    const WIDEST: usize = 420;
+    let [width, height] = size.map(|n| n as usize);
+    let bar = width.saturating_sub(4 * MARGIN).min(WIDEST);
+    let box_height = LEGEND + MARGIN;
+    if bar < WIDEST / 4 || height < 2 * box_height {
+        return;
+    }
+    let mut page = Page { width, pixels: rgba8.as_chunks().0.to_vec() };
+    let [x, y] = [MARGIN, height - box_height - MARGIN / 2];
+    for row in y..y + box_height {
+        page.pixels[row * width + x..row * width + x + bar + 2 * MARGIN].fill(PAPER);
+    }
+    page.legend([x + MARGIN, y + MARGIN / 2], bar, scale, what);
+    *rgba8 = page.pixels.into_flattened();
+}
+
 struct Page {
     width: usize,
     pixels: Vec<[u8; 4]>,
@@ -80,35 +99,26 @@ impl Page {
         }
     }
 
-    /// A bar with the colours of a scale, its powers of ten, and what it measures.
+    /// A bar with the colours of a scale, its ticks, and what it measures.
     fn legend(&mut self, [x, y]: [usize; 2], width: usize, scale: &Scale, what: &str) {
         for column in 0..width {
-            let [r, g, b] = ramp(column as f32 / (width - 1).max(1) as f32);
+            let [r, g, b] = scale.colour_at(column as f32 / (width - 1).max(1) as f32);
             for row in y..y + BAR {
                 self.pixels[row * self.width + x + column] = [r, g, b, 255];
             }
         }
         let advance = get_raster_width(FontWeight::Regular, RasterHeight::Size16);
-        for exponent in scale.exponents() {
-            let at = (scale.place(10f32.powi(exponent)) * (width - 1) as f32).round() as usize;
+        for (value, label) in scale.ticks() {
+            let at = (scale.place(value) * (width - 1) as f32).round() as usize;
             for row in y + BAR - 4..y + BAR + 3 {
                 self.pixels[row * self.width + x + at] = INK;
             }
-            let label = power_of_ten(exponent);
             let long = label.len() * advance;
             // In the middle below its tick, but inside the panel.
             let left = at.saturating_sub(long / 2).min(width.saturating_sub(long));
             self.text([x + left, y + BAR + 4], width - left.min(width), &label);
         }
         self.text([x, y + BAR + 6 + LINE], width, what);
-    }
-}
-
-/// As people write it: 0.01, but 1e-6.
-pub(crate) fn power_of_ten(exponent: i32) -> String {
-    match exponent {
-        -3..=3 => format!("{}", 10f64.powi(exponent)),
-        _ => format!("1e{exponent}"),
     }
 }
 
@@ -120,7 +130,7 @@ mod tests {
     fn panels_stand_where_they_belong() {
         let red = [200u8, 10, 20, 255].repeat(64 * 40);
         let panel = |legend| Panel { caption: "a caption that is cut off".into(), rgba8: red.clone(), legend };
-        let scale = Scale { least: 1e-4, most: 1.0 };
+        let scale = Scale::logarithmic(1e-4, 1.0);
         let panels = [panel(None), panel(None), panel(Some((scale, "degrees".into())))];
         let ([width, height], pixels) = sheet([64, 40], &panels);
         assert_eq!([width, height], [2 * 76 + 12, 12 + 2 * (16 + 6 + 40 + 12) + 6 + LEGEND as u32]);
@@ -130,10 +140,5 @@ mod tests {
         // A panel as narrow as one pixel, which no caption fits, is no reason to fail.
         let dot = Panel { caption: "x".into(), rgba8: vec![0, 0, 0, 255], legend: Some((scale, String::new())) };
         assert_eq!(sheet([1, 1], &[dot]).0[0], 25);
-    }
-
-    #[test]
-    fn powers_are_written_as_people_write_them() {
-        assert_eq!([-6, -2, 0, 2].map(power_of_ten), ["1e-6", "0.01", "1", "100"]);
     }
 }

@@ -1,6 +1,6 @@
 //! Histograms and legends as SVG: what stands where.
 
-use crate::output::{Scale, power_of_ten};
+use crate::output::Scale;
 use crate::verify::{Histogram, MeshReport};
 
 /// A logarithmic axis of errors.
@@ -174,22 +174,18 @@ impl Legend {
         const STOPS: usize = 8;
         let stop = |i: usize| {
             let part = i as f64 / STOPS as f64;
-            let value = scale.least * (scale.most / scale.least).powf(part as f32);
-            let [r, g, b] = scale.colour(value);
+            let [r, g, b] = scale.colour_at(part as f32);
             (100.0 * part, format!("#{r:02x}{g:02x}{b:02x}"))
         };
-        let tick = |exponent: i32| {
-            (
-                Self::INSET + (Self::WIDTH - 2.0 * Self::INSET) * f64::from(scale.place(10f32.powi(exponent))),
-                power_of_ten(exponent),
-            )
+        let tick = |(value, label): (f32, String)| {
+            (Self::INSET + (Self::WIDTH - 2.0 * Self::INSET) * f64::from(scale.place(value)), label)
         };
         let id = format!("scale{}{}", scale.least.log10(), scale.most.log10()).replace('.', "-");
         Self {
             id,
             what: what.to_owned(),
             stops: (0..=STOPS).map(stop).collect(),
-            ticks: scale.exponents().map(tick).collect(),
+            ticks: scale.ticks().into_iter().map(tick).collect(),
         }
     }
 }

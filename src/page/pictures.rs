@@ -19,9 +19,9 @@ use rayon::prelude::*;
 const SIDE: u32 = 480;
 
 /// Of positions of the shader, in parts of the diagonal; 2e-6 is allowed.
-const POSITION: Scale = Scale { least: 1e-11, most: 1e-5 };
+const POSITION: Scale = Scale::logarithmic(1e-11, 1e-5);
 /// Of its normals, in degrees; 1e-3 is allowed.
-const NORMAL: Scale = Scale { least: 1e-8, most: 1e-2 };
+const NORMAL: Scale = Scale::logarithmic(1e-8, 1e-2);
 
 /// The pictures of a mesh, ready to be put into a page.
 #[derive(Debug, Clone, Default)]

@@ -1,13 +1,13 @@
 //! `shaders/limit.wgsl` and `shaders/polygon.wgsl`: position, normal and field of every pixel.
 
-use super::{PACKED_FORMAT, Passes, SURFACE_FORMAT, Scene, SurfaceTargets, Visible};
+use super::{FieldPasses, PACKED_FORMAT, Passes, SURFACE_FORMAT, Scene, SurfaceTargets, Visible};
 use super::{bind, compute, dispatch, draw_fullscreen, fullscreen, whole};
 use crate::gpu::device::Device;
 use crate::gpu::shader::{LIMIT, POLYGON};
 use crate::gpu::{GpuError, Pipeline, Stage};
 use wgpu::BindingResource::TextureView;
 
-pub fn pipeline<'a>(passes: &'a Passes, device: &Device, pipeline: Pipeline) -> &'a wgpu::RenderPipeline {
+pub fn pipeline<'a>(passes: &'a FieldPasses, device: &Device, pipeline: Pipeline) -> &'a wgpu::RenderPipeline {
     let formats = [PACKED_FORMAT];
     match pipeline {
         Pipeline::Exact | Pipeline::Limit | Pipeline::Points => {
@@ -19,7 +19,7 @@ pub fn pipeline<'a>(passes: &'a Passes, device: &Device, pipeline: Pipeline) -> 
     }
 }
 
-fn pipeline_full<'a>(passes: &'a Passes, device: &Device, pipeline: Pipeline) -> &'a wgpu::RenderPipeline {
+fn pipeline_full<'a>(passes: &'a FieldPasses, device: &Device, pipeline: Pipeline) -> &'a wgpu::RenderPipeline {
     let create = |module, entry| fullscreen(passes, device, module, entry, &[SURFACE_FORMAT; 3], true);
     match pipeline {
         Pipeline::Exact | Pipeline::Limit | Pipeline::Points => {
@@ -38,6 +38,7 @@ pub fn run(
     surface: &wgpu::Texture,
     stage: Stage,
 ) -> Result<(), GpuError> {
+    let passes = &*passes.field(&scene.view.field);
     if stage == Stage::Compute && visible.proxy.is_none() {
         let pipeline = compute_pipeline(passes, device);
         let mut groups = groups(device, &|group| pipeline.get_bind_group_layout(group), scene, visible).to_vec();
@@ -48,7 +49,7 @@ pub fn run(
     draw(device, pipeline(passes, device, scene.view.pipeline), scene, visible, &[surface])
 }
 
-pub fn compute_pipeline<'a>(passes: &'a Passes, device: &Device) -> &'a wgpu::ComputePipeline {
+fn compute_pipeline<'a>(passes: &'a FieldPasses, device: &Device) -> &'a wgpu::ComputePipeline {
     passes.limit_compute.get_or_init(|| compute(passes, device, &LIMIT, "limit_compute"))
 }
 
@@ -61,6 +62,7 @@ pub fn run_full(
     surface: &SurfaceTargets,
 ) -> Result<(), GpuError> {
     let targets = [&surface.position, &surface.normal, &surface.field];
+    let passes = &*passes.field(&scene.view.field);
     draw(device, pipeline_full(passes, device, scene.view.pipeline), scene, visible, &targets)
 }
 

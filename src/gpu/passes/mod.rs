@@ -2,6 +2,7 @@
 
 pub mod charts;
 pub mod evaluate;
+mod fields;
 pub mod limit;
 pub mod points;
 pub mod rectangle;
@@ -14,7 +15,10 @@ use super::proxy::Proxy;
 use super::shader::{Content, Module, TILE_SIDE};
 use super::view::Tile;
 use super::{GpuError, Pipeline, Stage, Tables, View};
-use std::sync::OnceLock;
+use crate::field::Field;
+use fields::{Compiles, FieldPasses};
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use wgpu::{BufferUsages, PrimitiveTopology, TextureFormat, TextureUsages};
 
 /// The compiled pipelines, each made when it is first needed: on a software adapter compiling takes longer than drawing.
@@ -33,15 +37,12 @@ pub struct Passes {
     position: OnceLock<wgpu::RenderPipeline>,
     landed: OnceLock<wgpu::RenderPipeline>,
     landed_full: OnceLock<wgpu::RenderPipeline>,
-    limit: OnceLock<wgpu::RenderPipeline>,
-    limit_full: OnceLock<wgpu::RenderPipeline>,
-    polygon: OnceLock<wgpu::RenderPipeline>,
-    polygon_full: OnceLock<wgpu::RenderPipeline>,
+    /// By the source of the field.
+    fields: Mutex<HashMap<String, Arc<FieldPasses>>>,
     shade: OnceLock<wgpu::RenderPipeline>,
     resolve: OnceLock<wgpu::RenderPipeline>,
     resolve_linear: OnceLock<wgpu::RenderPipeline>,
     evaluate: OnceLock<wgpu::ComputePipeline>,
-    limit_compute: OnceLock<wgpu::ComputePipeline>,
     shade_compute: OnceLock<wgpu::ComputePipeline>,
 }
 
@@ -50,23 +51,24 @@ impl Passes {
         Passes { content, ..Passes::default() }
     }
 
-    fn shader(&self, device: &Device, module: &Module) -> wgpu::ShaderModule {
-        let variant = self.content.variant(device.block_rows);
-        device.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some(module.name),
-            source: wgpu::ShaderSource::Wgsl(module.source_for(&variant).into()),
-        })
+    /// The pipelines that read this field.
+    pub(super) fn field(&self, field: &Field) -> Arc<FieldPasses> {
+        let source = field.method.wgsl();
+        let mut fields = self.fields.lock().unwrap_or_else(PoisonError::into_inner);
+        let new = |source: &String| Arc::new(FieldPasses::new(self.content, source.clone()));
+        fields.entry(source).or_insert_with_key(new).clone()
     }
 
     /// Compiles what a picture needs, in parallel.
-    pub(super) fn prepare(&self, device: &Device, pipeline: Pipeline, colour: Colour) {
+    pub(super) fn prepare(&self, device: &Device, view: &View, colour: Colour) {
+        let pipeline = view.pipeline;
         rayon::join(
             || match pipeline {
                 Pipeline::Exact => charts::prepare(self, device),
                 _ => drop(visibility::pipeline(self, device, pipeline)),
             },
             || {
-                limit::pipeline(self, device, pipeline);
+                limit::pipeline(&self.field(&view.field), device, pipeline);
                 shade::pipeline(self, device);
                 resolve::pipeline(self, device, colour);
             },
@@ -218,7 +220,7 @@ impl PictureTargets {
 /// A pipeline that draws one triangle over the targets; `masked`: where the depth buffer of [`Visible`] has surface. (A
 /// branch on coverage in the shader would save nothing on software adapters: they compute both sides.)
 fn fullscreen(
-    passes: &Passes,
+    passes: &impl Compiles,
     device: &Device,
     module: &Module,
     entry: &str,
@@ -261,7 +263,7 @@ struct Drawing<'a> {
     depth: Depth,
 }
 
-fn create(passes: &Passes, device: &Device, drawing: &Drawing<'_>) -> wgpu::RenderPipeline {
+fn create(passes: &impl Compiles, device: &Device, drawing: &Drawing<'_>) -> wgpu::RenderPipeline {
     let Drawing { module, entries: [vertex, fragment], topology, ref layout, formats, depth } = *drawing;
     let shader = passes.shader(device, module);
     let targets: Vec<_> = formats.iter().map(|&format| Some(format.into())).collect();
@@ -300,7 +302,7 @@ fn create(passes: &Passes, device: &Device, drawing: &Drawing<'_>) -> wgpu::Rend
 }
 
 /// A compute pipeline.
-fn compute(passes: &Passes, device: &Device, module: &Module, entry: &str) -> wgpu::ComputePipeline {
+fn compute(passes: &impl Compiles, device: &Device, module: &Module, entry: &str) -> wgpu::ComputePipeline {
     device.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
         label: Some(entry),
         layout: None,

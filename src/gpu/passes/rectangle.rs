@@ -1,5 +1,6 @@
 //! `shaders/rectangle.wgsl`: the smallest rectangle that encloses the proxy's projection.
 
+use super::fields::Compiles;
 use super::{Passes, Scene, bind};
 use crate::gpu::GpuError;
 use crate::gpu::device::Device;
