@@ -53,7 +53,7 @@ impl fmt::Display for EndCap {
 
 /// Control points of a patch.
 #[derive(Debug, Clone, PartialEq)]
-#[expect(clippy::large_enum_variant, reason = "most patches are splines or have their own box; both are copied once")]
+#[expect(clippy::large_enum_variant, reason = "most patches are splines; a box each would cost more than it saves")]
 pub enum FarNet {
     /// A uniform bicubic B-spline, u fastest, phantom points included.
     BSpline([DVec3; 16]),
