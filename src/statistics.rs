@@ -1,4 +1,4 @@
-//! What errors are summed up in.
+//! Where errors are looked for, and what they are summed up in.
 
 use glam::DVec3;
 
@@ -36,6 +36,11 @@ pub fn short(x: f64) -> String {
         size if size < 9.95 => format!("{x:.2}"),
         _ => format!("{x:.0}"),
     }
+}
+
+/// Point `i` of a sequence that fills the unit square evenly (Roberts' R2: multiples of the plastic number's powers).
+pub fn scatter(i: u32) -> [f64; 2] {
+    [0.754_877_666_246_692_8, 0.569_840_290_998_053_3].map(|step| (0.5 + f64::from(i) * step).fract())
 }
 
 /// Angle between two normals in degrees, exact for small ones; NaN where one is none.

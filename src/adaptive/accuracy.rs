@@ -3,7 +3,7 @@
 use super::AdaptivePatches;
 use crate::osd::FarPatch;
 use crate::stam::LimitSurface;
-use crate::statistics::{Spread, angle_deg};
+use crate::statistics::{Spread, angle_deg, scatter};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -21,11 +21,6 @@ pub struct Accuracy {
     pub position: Spread,
 }
 
-/// Point `i` of a sequence that fills the unit square evenly (Roberts' R2: multiples of the plastic number's powers).
-fn scatter(i: usize) -> [f64; 2] {
-    [0.754_877_666_246_692_8, 0.569_840_290_998_053_3].map(|step| (0.5 + i as f64 * step).fract())
-}
-
 impl AdaptivePatches {
     /// Compares the patches that approximate with the limit surface of the same mesh, at up to `samples` points, the same number
     /// on each of them and at least one.
@@ -33,7 +28,7 @@ impl AdaptivePatches {
         /// Distance, in diagonals, from which a regular patch approximates: far above the rounding of exact ones.
         const OFF: f64 = 1e-9;
         /// Points at which that is looked for.
-        const LOOKS: usize = 2;
+        const LOOKS: u32 = 2;
         let bounds = self.bounds();
         let diagonal = (bounds[1] - bounds[0]).length().max(f64::MIN_POSITIVE);
         // Angle and distance at a point.
@@ -47,14 +42,16 @@ impl AdaptivePatches {
         let deepest = self.patches.iter().map(|patch| patch.level).max().unwrap_or(0);
         let approximates = |index: &usize| {
             let patch = &self.patches[*index];
-            let is_off = |i: usize| error(*index, scatter(i)).is_some_and(|[_, distance]| distance > OFF);
+            let is_off = |i: u32| error(*index, scatter(i)).is_some_and(|[_, distance]| distance > OFF);
             patch.is_end_cap || patch.level == deepest && (0..LOOKS).any(is_off)
         };
         let rough: Vec<usize> = (0..self.patches.len()).into_par_iter().filter(approximates).collect();
         let each = (samples / rough.len().max(1)).max(1);
         let errors: Vec<[f64; 2]> = rough
             .par_iter()
-            .flat_map_iter(|&index| (0..each).filter_map(move |i| error(index, scatter(index * each + i))))
+            .flat_map_iter(|&index| {
+                (0..each).filter_map(move |i| error(index, scatter((index * each + i) as u32 % (1 << 20))))
+            })
             .collect();
         let spread = |k: usize| Spread::of(errors.iter().map(|error| error[k]));
         let weight = |patch: &FarPatch| 0.25f64.powi(i32::from(patch.level));

@@ -5,11 +5,12 @@ use super::bin::{Bins, CAP};
 use super::clock::Clock;
 use super::difference::{Check, Difference, Normal, Sample};
 use super::key::{Against, Key, TierName};
-use super::{Subject, VerifyError, regular, rounding};
+use super::{Subject, VerifyError, rounding};
 use crate::field::{Camera, DEFAULT_FOV, Scout};
 use crate::gpu::{self, Gpu, NO_PATCH, SurfaceImage, Tables, View};
 use crate::osd::{Answer, Far, Location, ReferenceJet};
 use crate::stam::Jet;
+use crate::statistics::scatter;
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -73,7 +74,7 @@ fn place(patch: usize, i: usize) -> [f32; 2] {
     const DEEP: [[f32; 2]; 4] = [[6.0, 6.0], [6.0, 1.0], [12.0, 12.0], [0.0, 12.0]];
     match i {
         1 | 3 | 5 | 7 => DEEP[i / 2].map(|k| (-k).exp2()),
-        _ => regular::scatter((PER_PATCH * patch + i) as u32 % (1 << 20)).map(|x| x as f32),
+        _ => scatter((PER_PATCH * patch + i) as u32 % (1 << 20)).map(|x| x as f32),
     }
 }
 

@@ -8,6 +8,7 @@ use super::references::{References, thinned};
 use super::{Subject, VerifyError};
 use crate::osd::{Answer, Bfr, Location, Reference, ReferenceJet};
 use crate::stam::Jet;
+use crate::statistics::scatter;
 
 /// Position as at vertices; a derivative may lose five times as much, OpenSubdiv's own rule for its regressions.
 /// Rounding of world coordinates comes on top ([`Rounding`](super::rounding::Rounding)).
@@ -19,11 +20,6 @@ const BUDGET: usize = 200_000;
 /// Samples inside every patch, and inside those of which none of these was judged.
 const PER_PATCH: u32 = 3;
 const MORE_PER_PATCH: u32 = 16;
-
-/// Point `i` of a sequence that fills the unit square evenly (Roberts' R2: multiples of the plastic number's powers).
-pub(super) fn scatter(i: u32) -> [f64; 2] {
-    [0.754_877_666_246_692_8, 0.569_840_290_998_053_3].map(|step| (0.5 + f64::from(i) * step).fract())
-}
 
 /// `per_face` scattered samples on each of the subject's faces, other ones on every face.
 pub(super) fn scattered(subject: &Subject<'_>, per_face: usize, budget: usize) -> Vec<Location> {

@@ -2,8 +2,8 @@
 
 use crate::patch::{Patch, PatchKind};
 use crate::stam::LimitSurface;
+use crate::statistics::scatter;
 use crate::verify::Sample;
-use crate::verify::regular::scatter;
 
 /// Samples of each ptex face unless asked otherwise: the fixed points of the face, and some twenty each that are scattered over it and
 /// over its patches.
