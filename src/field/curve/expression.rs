@@ -27,28 +27,45 @@ enum Node {
     Y,
     Negative(Box<Node>),
     Binary(char, Box<[Node; 2]>),
-    Call(Function, Vec<Node>),
+    Call(&'static Function, Vec<Node>),
 }
 
-/// A function: its name, its WGSL name, how many arguments it takes, and what it is.
-type Function = &'static (&'static str, usize, fn(&[f64]) -> f64);
+/// A function, by the name that it has in WGSL too.
+#[derive(Debug, Clone, Copy)]
+struct Function {
+    name: &'static str,
+    arguments: usize,
+    apply: fn(&[f64]) -> f64,
+}
 
-/// Names are those of WGSL too.
-const FUNCTIONS: [(&str, usize, fn(&[f64]) -> f64); 14] = [
-    ("sqrt", 1, |a| a[0].sqrt()),
-    ("abs", 1, |a| a[0].abs()),
-    ("sin", 1, |a| a[0].sin()),
-    ("cos", 1, |a| a[0].cos()),
-    ("tan", 1, |a| a[0].tan()),
-    ("exp", 1, |a| a[0].exp()),
-    ("log", 1, |a| a[0].ln()),
-    ("sign", 1, |a| if a[0] == 0.0 { 0.0 } else { a[0].signum() }),
-    ("floor", 1, |a| a[0].floor()),
-    ("tanh", 1, |a| a[0].tanh()),
-    ("atan2", 2, |a| a[0].atan2(a[1])),
-    ("min", 2, |a| a[0].min(a[1])),
-    ("max", 2, |a| a[0].max(a[1])),
-    ("pow", 2, |a| a[0].powf(a[1])),
+impl Function {
+    const fn new(name: &'static str, arguments: usize, apply: fn(&[f64]) -> f64) -> Function {
+        Function { name, arguments, apply }
+    }
+}
+
+/// There is one function of each name.
+impl PartialEq for Function {
+    fn eq(&self, other: &Function) -> bool {
+        self.name == other.name
+    }
+}
+
+static FUNCTIONS: [Function; 14] = [
+    Function::new("sqrt", 1, |a| a[0].sqrt()),
+    Function::new("abs", 1, |a| a[0].abs()),
+    Function::new("sin", 1, |a| a[0].sin()),
+    Function::new("cos", 1, |a| a[0].cos()),
+    Function::new("tan", 1, |a| a[0].tan()),
+    Function::new("exp", 1, |a| a[0].exp()),
+    Function::new("log", 1, |a| a[0].ln()),
+    Function::new("sign", 1, |a| if a[0] == 0.0 { 0.0 } else { a[0].signum() }),
+    Function::new("floor", 1, |a| a[0].floor()),
+    Function::new("tanh", 1, |a| a[0].tanh()),
+    Function::new("atan2", 2, |a| a[0].atan2(a[1])),
+    Function::new("min", 2, |a| a[0].min(a[1])),
+    Function::new("max", 2, |a| a[0].max(a[1])),
+    Function::new("pow", 2, |a| a[0].powf(a[1])),
 ];
 
 /// Deepest nesting: a reader by recursion must not run out of stack.
@@ -102,8 +119,8 @@ impl Node {
                     _ => a.powf(b),
                 }
             }
-            Node::Call((_, _, function), arguments) => {
-                function(&arguments.iter().map(|argument| argument.value(at)).collect::<Vec<_>>())
+            Node::Call(function, arguments) => {
+                (function.apply)(&arguments.iter().map(|argument| argument.value(at)).collect::<Vec<_>>())
             }
         }
     }
@@ -117,8 +134,8 @@ impl Node {
             Node::Negative(a) => format!("(-{})", a.wgsl()),
             Node::Binary('^', sides) => power(&sides[0].wgsl(), &sides[1]),
             Node::Binary(operator, sides) => format!("({} {operator} {})", sides[0].wgsl(), sides[1].wgsl()),
-            Node::Call(("pow", ..), arguments) => power(&arguments[0].wgsl(), &arguments[1]),
-            Node::Call((name, ..), arguments) => {
+            Node::Call(Function { name: "pow", .. }, arguments) => power(&arguments[0].wgsl(), &arguments[1]),
+            Node::Call(Function { name, .. }, arguments) => {
                 format!("{name}({})", arguments.iter().map(Node::wgsl).collect::<Vec<_>>().join(", "))
             }
         }
@@ -256,8 +273,8 @@ impl Reader<'_> {
             self.at += name.len();
             return Ok(node);
         }
-        let Some(function) = FUNCTIONS.iter().find(|(known, ..)| *known == name) else {
-            let known: Vec<_> = FUNCTIONS.iter().map(|(name, ..)| *name).collect();
+        let Some(function) = FUNCTIONS.iter().find(|function| function.name == name) else {
+            let known: Vec<_> = FUNCTIONS.iter().map(|function| function.name).collect();
             return Err(self.error(format!("{name} is not known; there are x, y, pi, {}", known.join(", "))));
         };
         self.at += name.len();
@@ -267,9 +284,9 @@ impl Reader<'_> {
             arguments.push(self.sum()?);
         }
         self.expect(')')?;
-        match arguments.len() == function.1 {
+        match arguments.len() == function.arguments {
             true => Ok(Node::Call(function, arguments)),
-            false => Err(self.error(format!("{name} takes {} argument(s)", function.1))),
+            false => Err(self.error(format!("{name} takes {} argument(s)", function.arguments))),
         }
     }
 }
