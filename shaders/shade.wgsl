@@ -30,6 +30,10 @@ struct Shade {
 @group(0) @binding(3) var<uniform> shade_in: Shade;
 @group(0) @binding(4) var<uniform> light: Light;
 
+// Whether pipelines draw false colours: a branch on the pattern would cost all pictures on software adapters, which compute both
+// sides.
+override FALSE_COLOURS: bool = false;
+
 // Field value at a pixel; z above 0 where it is defined.
 fn field_at(pixel: vec2i) -> vec3f {
     let s = textureLoad(packed, pixel, 0);
@@ -88,7 +92,7 @@ fn shaded(pixel: vec2i, s: vec4u) -> vec4f {
     let fresnel = 0.04 + 0.5 * pow(1.0 - min(facing, 1.0), 4.0);
     let body = mix(shade_in.paint * (0.25 + 1.25 * wrap * wrap), around, fresnel * wrap);
     let f = bitcast<vec2f>(s.xy);
-    if shade_in.pattern == PATTERN_HEAT {
+    if FALSE_COLOURS {
         return vec4f(false_colour(f.x, shade_in.range, angles.y > 0.0) * (0.35 + 0.65 * wrap), 1.0);
     }
     let jx = change(f, pixel, vec2i(1, 0));

@@ -228,7 +228,6 @@ fn constants(variant: &Variant) -> String {
         ("PATTERN_CIRCLES", PATTERN_CIRCLES),
         ("PATTERN_PICTURE", PATTERN_PICTURE),
         ("PATTERN_BAND", PATTERN_BAND),
-        ("PATTERN_HEAT", PATTERN_HEAT),
         ("WORKGROUP", WORKGROUP),
         ("TILE_SIDE", TILE_SIDE),
         ("TABLE_WIDTH", TABLE_WIDTH),

@@ -40,7 +40,11 @@ fn create(
     layout: Option<VertexBufferLayout<'_>>,
 ) -> wgpu::RenderPipeline {
     let formats = &[PATCH_FORMAT, UV_FORMAT, CERTIFICATE_FORMAT];
-    super::create(passes, device, &Drawing { module, entries, topology, layout, formats, depth: Depth::Nearest })
+    super::create(
+        passes,
+        device,
+        &Drawing { module, entries, topology, layout, formats, depth: Depth::Nearest, constants: &[] },
+    )
 }
 
 pub fn run(device: &Device, passes: &Passes, charts: &Charts, visible: &Visible) -> Result<(), GpuError> {

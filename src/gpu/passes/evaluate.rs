@@ -14,7 +14,7 @@ use wgpu::BufferUsages;
 const BATCH: usize = 1 << 20;
 
 fn pipeline<'a>(passes: &'a Passes, device: &Device) -> &'a wgpu::ComputePipeline {
-    passes.evaluate.get_or_init(|| compute(passes, device, &EVALUATE, "evaluate"))
+    passes.evaluate.get_or_init(|| compute(passes, device, &EVALUATE, "evaluate", &[]))
 }
 
 pub fn run(device: &Device, passes: &Passes, tables: &Tables, samples: &[Sample]) -> Result<Vec<Jet>, GpuError> {

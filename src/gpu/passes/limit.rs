@@ -50,7 +50,7 @@ pub fn run(
 }
 
 fn compute_pipeline<'a>(passes: &'a FieldPasses, device: &Device) -> &'a wgpu::ComputePipeline {
-    passes.limit_compute.get_or_init(|| compute(passes, device, &LIMIT, "limit_compute"))
+    passes.limit_compute.get_or_init(|| compute(passes, device, &LIMIT, "limit_compute", &[]))
 }
 
 /// Writes everything in f32.

@@ -39,11 +39,12 @@ pub struct Passes {
     landed_full: OnceLock<wgpu::RenderPipeline>,
     /// By the source of the field.
     fields: Mutex<HashMap<String, Arc<FieldPasses>>>,
-    shade: OnceLock<wgpu::RenderPipeline>,
+    /// Of lights, and of false colours.
+    shade: [OnceLock<wgpu::RenderPipeline>; 2],
     resolve: OnceLock<wgpu::RenderPipeline>,
     resolve_linear: OnceLock<wgpu::RenderPipeline>,
     evaluate: OnceLock<wgpu::ComputePipeline>,
-    shade_compute: OnceLock<wgpu::ComputePipeline>,
+    shade_compute: [OnceLock<wgpu::ComputePipeline>; 2],
 }
 
 impl Passes {
@@ -69,7 +70,7 @@ impl Passes {
             },
             || {
                 limit::pipeline(&self.field(&view.field), device, pipeline);
-                shade::pipeline(self, device);
+                shade::pipeline(self, device, view);
                 resolve::pipeline(self, device, colour);
             },
         );
@@ -237,6 +238,7 @@ fn fullscreen(
             layout: None,
             formats,
             depth: if masked { Depth::Mask } else { Depth::None },
+            constants: &[],
         },
     )
 }
@@ -261,10 +263,18 @@ struct Drawing<'a> {
     layout: Option<wgpu::VertexBufferLayout<'a>>,
     formats: &'a [TextureFormat],
     depth: Depth,
+    constants: Constants<'a>,
+}
+
+/// Values of a shader's `override` constants.
+type Constants<'a> = &'a [(&'a str, f64)];
+
+fn options(constants: Constants<'_>) -> wgpu::PipelineCompilationOptions<'_> {
+    wgpu::PipelineCompilationOptions { constants, ..Default::default() }
 }
 
 fn create(passes: &impl Compiles, device: &Device, drawing: &Drawing<'_>) -> wgpu::RenderPipeline {
-    let Drawing { module, entries: [vertex, fragment], topology, ref layout, formats, depth } = *drawing;
+    let Drawing { module, entries: [vertex, fragment], topology, ref layout, formats, depth, constants } = *drawing;
     let shader = passes.shader(device, module);
     let targets: Vec<_> = formats.iter().map(|&format| Some(format.into())).collect();
     let depth_state = |write, compare| wgpu::DepthStencilState {
@@ -293,7 +303,7 @@ fn create(passes: &impl Compiles, device: &Device, drawing: &Drawing<'_>) -> wgp
         fragment: Some(wgpu::FragmentState {
             module: &shader,
             entry_point: Some(fragment),
-            compilation_options: Default::default(),
+            compilation_options: options(constants),
             targets: &targets,
         }),
         multiview_mask: None,
@@ -302,13 +312,19 @@ fn create(passes: &impl Compiles, device: &Device, drawing: &Drawing<'_>) -> wgp
 }
 
 /// A compute pipeline.
-fn compute(passes: &impl Compiles, device: &Device, module: &Module, entry: &str) -> wgpu::ComputePipeline {
+fn compute(
+    passes: &impl Compiles,
+    device: &Device,
+    module: &Module,
+    entry: &str,
+    constants: Constants<'_>,
+) -> wgpu::ComputePipeline {
     device.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
         label: Some(entry),
         layout: None,
         module: &passes.shader(device, module),
         entry_point: Some(entry),
-        compilation_options: Default::default(),
+        compilation_options: options(constants),
         cache: None,
     })
 }

@@ -30,6 +30,7 @@ fn create(passes: &Passes, device: &Device, entry: &str, formats: &[wgpu::Textur
         layout: None,
         formats,
         depth: Depth::Nearest,
+        constants: &[],
     };
     super::create(passes, device, &drawing)
 }

@@ -1,7 +1,8 @@
 //! `shaders/shade.wgsl`: field and pattern into colour.
 
 use super::{
-    Passes, PictureTargets, SAMPLE_FORMAT, Scene, Visible, bind, compute, dispatch, draw_fullscreen, fullscreen, whole,
+    Depth, Drawing, Passes, PictureTargets, SAMPLE_FORMAT, Scene, Visible, bind, compute, create, dispatch,
+    draw_fullscreen, whole,
 };
 use crate::field::{Pattern, Picture};
 use crate::gpu::device::Device;
@@ -78,12 +79,29 @@ fn mip_levels(picture: &Picture) -> Vec<Picture> {
     levels
 }
 
-pub fn pipeline<'a>(passes: &'a Passes, device: &Device) -> &'a wgpu::RenderPipeline {
-    passes.shade.get_or_init(|| fullscreen(passes, device, &SHADE, "shade", &[SAMPLE_FORMAT], true))
+/// Whether a view's pattern is false colours, and what its pipelines are told.
+fn false_colours(view: &View) -> (usize, [(&'static str, f64); 1]) {
+    let is_heat = usize::from(matches!(view.pattern, Pattern::Heat { .. }));
+    (is_heat, [("FALSE_COLOURS", is_heat as f64)])
 }
 
-pub fn compute_pipeline<'a>(passes: &'a Passes, device: &Device) -> &'a wgpu::ComputePipeline {
-    passes.shade_compute.get_or_init(|| compute(passes, device, &SHADE, "shade_compute"))
+pub fn pipeline<'a>(passes: &'a Passes, device: &Device, view: &View) -> &'a wgpu::RenderPipeline {
+    let (which, constants) = false_colours(view);
+    let drawing = Drawing {
+        module: &SHADE,
+        entries: ["fullscreen", "shade"],
+        topology: wgpu::PrimitiveTopology::TriangleList,
+        layout: None,
+        formats: &[SAMPLE_FORMAT],
+        depth: Depth::Mask,
+        constants: &constants,
+    };
+    passes.shade[which].get_or_init(|| create(passes, device, &drawing))
+}
+
+pub fn compute_pipeline<'a>(passes: &'a Passes, device: &Device, view: &View) -> &'a wgpu::ComputePipeline {
+    let (which, constants) = false_colours(view);
+    passes.shade_compute[which].get_or_init(|| compute(passes, device, &SHADE, "shade_compute", &constants))
 }
 
 pub fn run(
@@ -105,7 +123,7 @@ pub fn run(
         (4, scene.light.as_entire_binding()),
     ];
     if stage == Stage::Compute {
-        let pipeline = compute_pipeline(passes, device);
+        let pipeline = compute_pipeline(passes, device, scene.view);
         let out = whole(&picture.samples);
         let groups = [
             bind(device, pipeline.get_bind_group_layout(0), &resources),
@@ -113,7 +131,7 @@ pub fn run(
         ];
         return dispatch(device, pipeline, &groups, &picture.samples);
     }
-    let pipeline = pipeline(passes, device);
+    let pipeline = pipeline(passes, device, scene.view);
     let group = bind(device, pipeline.get_bind_group_layout(0), &resources);
     draw_fullscreen(device, pipeline, &[group], &[&picture.samples], Some(&visible.depth))
 }

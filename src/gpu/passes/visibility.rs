@@ -69,6 +69,7 @@ fn create(
         layout: Some(layout),
         formats,
         depth: Depth::Nearest,
+        constants: &[],
     };
     super::create(passes, device, &drawing)
 }
