@@ -8,7 +8,8 @@ use catoptric::stam::LimitSurface;
 use glam::DVec3;
 use std::path::PathBuf;
 
-/// Everything that a format may take for its own: quotes, tags, escapes, what ends lines and comments, and letters beyond ASCII.
+/// Everything that a format may take for its own: quotes, tags, escapes, what ends lines and comments, and letters
+/// beyond ASCII.
 pub const HOSTILE: &str = "catoptric lines 'a <b>&amp; \"c\" */ --> ]]> %s \u{fc}\u{1f697} \\n\n\t\u{1}d.obj' \\";
 /// What [`HOSTILE`] is in a comment of one line.
 pub const HOSTILE_LINE: &str =
@@ -30,8 +31,8 @@ fn through(surface: &LimitSurface, face: u32, closed: bool, key: (i32, f64), uvs
     }
 }
 
-/// Circles and lines on faces all over the surface, lights -1 to 2, light 2 with two values; among them a closed curve of two
-/// points, and one of a single point, which only JSON keeps.
+/// Circles and lines on faces all over the surface, lights -1 to 2, light 2 with two values; among them a closed curve
+/// of two points, and one of a single point, which only JSON keeps.
 pub fn curves(surface: &LimitSurface) -> Vec<Curve> {
     let circle = |n: u32, radius: f64| -> Vec<[f64; 2]> {
         (0..n)

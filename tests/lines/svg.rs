@@ -117,7 +117,8 @@ fn ink_is_where_the_curves_are() {
                 let at = a.lerp(b, f64::from(k) / steps);
                 let cell = |x: f64, n: u32| (x.floor() as u32).min(n - 1);
                 let (x, y) = (cell(at.x, SIZE[0]), cell(at.y, SIZE[1]));
-                // A pen 1 pixel wide covers a third of some pixel within half a pixel of its middle, whatever its direction.
+                // A pen 1 pixel wide covers a third of some pixel within half a pixel of its middle, whatever its
+                // direction.
                 let around = |dx: i64, dy: i64| {
                     let inside = |v: i64, n: u32| u32::try_from(v).ok().filter(|&v| v < n);
                     let (x, y) = (inside(i64::from(x) + dx, SIZE[0])?, inside(i64::from(y) + dy, SIZE[1])?);

@@ -59,8 +59,8 @@ fn check(prim: &Prim, wrap: &str, curves: &[&Curve], middle: DVec3, diagonal: f6
     }
 }
 
-/// Scopes, curves, their wrapping, primvars and extents come back; also a thousand diagonals from the origin, where points in 32
-/// bits would be a ten-thousandth of a diagonal off.
+/// Scopes, curves, their wrapping, primvars and extents come back; also a thousand diagonals from the origin, where
+/// points in 32 bits would be a ten-thousandth of a diagonal off.
 #[test]
 fn scopes_and_curves_come_back() {
     let surface = surface();
@@ -108,6 +108,6 @@ fn scopes_and_curves_come_back() {
 fn it_says_how_it_was_made() {
     let surface = surface();
     let text = String::from_utf8(bytes(&curves(&surface), &close_camera(&surface, [64, 64]), FORMAT)).expect("UTF-8");
-    let expected = "string catoptric = \"catoptric lines 'a <b>&amp; \\\"c\\\" */ --> ]]> %s \u{fc}\u{1f697} \\\\n\\n\\t\\x01d.obj' \\\\\"\n";
+    let expected = "string catoptric = \"catoptric lines 'a <b>&amp; \\\"c\\\" */ --> ]]> %s \u{fc}\u{1f697} \\\\n\\n\\t\\x01d.obj' \\\\\"";
     assert!(text.contains(expected), "{}", &text[..400]);
 }

@@ -1,7 +1,7 @@
 //! DXF of release 12 (AC1009): what every CAD program reads; it needs no handles.
 //!
-//! A curve is a 3D `POLYLINE` on the layer of its light. Its extended data, of the application CATOPTRIC, has the value (group
-//! 1040) and the light (1071). Release 12 knows no unit of length.
+//! A curve is a 3D `POLYLINE` on the layer of its light. Its extended data, of the application CATOPTRIC, has the value
+//! (group 1040) and the light (1071). Release 12 knows no unit of length.
 
 use super::{Lines, groups, one_line, shortest};
 use glam::DVec3;

@@ -1,4 +1,8 @@
-//! JSON: `{"field", "made_by", "curves": [{"value", "light", "closed", "points": [[x,y,z], ...], "params": [[face,u,v], ...]}]}`.
+//! JSON, numbers in as few digits as bring them back:
+//! ```json
+//! {"field": "reflection", "made_by": "...", "curves": [
+//!   {"value": 0.5, "light": 1, "closed": false, "points": [[x, y, z], ...], "params": [[face, u, v], ...]}, ...]}
+//! ```
 
 use super::Lines;
 use crate::curves::Curve;

@@ -1,7 +1,7 @@
 //! Curves as files, a format each: what other programs draw, measure and plot.
 //!
-//! Practice: [`Lines`] says what is written, [`LinesFormat`] how. Curves of the same light and value are a group, which every
-//! format keeps together under one name ([`groups`]). Space is written in world units; only SVG is a picture.
+//! Practice: [`Lines`] says what is written, [`LinesFormat`] how. Curves of the same light and value are a group, which
+//! every format keeps together under one name ([`groups`]). Space is written in world units; only SVG is a picture.
 
 mod dxf;
 mod json;

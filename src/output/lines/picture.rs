@@ -16,8 +16,8 @@ pub struct Drawn {
 /// Part of the distance from eye to target in front of which nothing is drawn: only what would divide by zero.
 const NEAR: f64 = 1e-9;
 
-/// A point before the division by its last coordinate: in the picture where |x| and |y| are at most w, and z, the distance
-/// from the near plane, is not negative.
+/// A point before the division by its last coordinate: in the picture where |x| and |y| are at most w, and z, the
+/// distance from the near plane, is not negative.
 struct Lens {
     rows: [DVec4; 4],
     size: DVec2,
@@ -64,8 +64,8 @@ fn inside(a: DVec4, b: DVec4) -> Option<[f64; 2]> {
     (from < to).then_some([from, to])
 }
 
-/// The parts of a curve that are in front of the eye and within the picture, in its order. Straight pieces between its points
-/// are cut exactly at the borders. What hides them is not asked: [`crate::curves`] does that in space.
+/// The parts of a curve that are in front of the eye and within the picture, in its order. Straight pieces between its
+/// points are cut exactly at the borders. What hides them is not asked: [`crate::curves`] does that in space.
 pub fn in_picture(camera: &Camera, curve: &Curve) -> Vec<Drawn> {
     let lens = Lens::new(camera);
     let points: Vec<DVec4> = curve.points.iter().map(|&point| lens.at(point)).collect();

@@ -41,10 +41,9 @@ pub(super) fn write(lines: &Lines<'_>, mm_per_pixel: Option<f64>, out: &mut dyn 
     let [width, height] = lines.camera.size.map(|side| coordinate(f64::from(side) * scale));
     let (unit, pen) = if mm_per_pixel.is_some() { ("mm", PEN_MM) } else { ("", PEN_PX) };
     writeln!(out, r#"<?xml version="1.0" encoding="UTF-8"?>"#)?;
-    writeln!(
-        out,
-        r#"<svg xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape" version="1.1" width="{width}{unit}" height="{height}{unit}" viewBox="0 0 {width} {height}">"#
-    )?;
+    let spaces = r#"xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape""#;
+    let size = format!(r#"width="{width}{unit}" height="{height}{unit}" viewBox="0 0 {width} {height}""#);
+    writeln!(out, r#"<svg {spaces} version="1.1" {size}>"#)?;
     writeln!(out, "<title>{}</title>", escaped(lines.field))?;
     writeln!(out, "<desc>{}</desc>", escaped(lines.made_by))?;
     writeln!(
@@ -57,10 +56,9 @@ pub(super) fn write(lines: &Lines<'_>, mm_per_pixel: Option<f64>, out: &mut dyn 
             continue;
         }
         let (name, light, value) = (&group.name, group.light, shortest(group.value));
-        writeln!(
-            out,
-            r#"<g id="{name}" inkscape:groupmode="layer" inkscape:label="{name}" data-light="{light}" data-value="{value}"><title>light {light}: {value}</title>"#
-        )?;
+        let layer = format!(r#"id="{name}" inkscape:groupmode="layer" inkscape:label="{name}""#);
+        writeln!(out, r#"<g {layer} data-light="{light}" data-value="{value}">"#)?;
+        writeln!(out, "<title>light {light}: {value}</title>")?;
         for part in drawn {
             let points = part.points.iter().map(|&point| {
                 let DVec2 { x, y } = point * scale;

@@ -1,9 +1,9 @@
 //! USD as text: linear basis curves.
 //!
-//! `/lines` is moved by the middle of the curves, and their points, which USD keeps in 32 bits, are relative to it, so that none
-//! is farther off than half an ulp of the object's size, wherever it stands. A light is a scope with its number and value as
-//! attributes; in it, open curves and closed ones are a prim each, for `wrap` belongs to the prim. Vertices have their
-//! ptex faces and parameters as primvars.
+//! `/lines` is moved by the middle of the curves, and their points, which USD keeps in 32 bits, are relative to it, so
+//! that none is farther off than half an ulp of the object's size, wherever it stands. A light is a scope with its
+//! number and value as attributes; in it, open curves and closed ones are a prim each, for `wrap` belongs to the prim.
+//! Vertices have their ptex faces and parameters as primvars.
 
 use super::{Lines, groups, shortest};
 use crate::curves::Curve;
