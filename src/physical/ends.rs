@@ -91,8 +91,8 @@ impl Ends {
         for end in &self.0 {
             let nearness = end.nearness(middle);
             let sine = radius * nearness;
-            // Written so that NaN, at the end itself, is refused.
-            if !(sine < 1.0) {
+            // At the end itself it is not a number.
+            if sine >= 1.0 || sine.is_nan() {
                 return None;
             }
             // 2 - 2 c = 2 s^2 / (1 + c), without cancellation.

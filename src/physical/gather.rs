@@ -168,8 +168,7 @@ fn improved(surface: &LimitSurface, ends: &Ends, piece: &Unclear) -> [f64; 2] {
         let (position, [du, dv]) = (jet.first.position, [jet.first.du, jet.first.dv]);
         let (pull, bend) = (ends.pull(position), ends.bend(position));
         let residual = (pull - pull.dot(jet.first.normal) * jet.first.normal).length();
-        // Written so that NaN is not better.
-        if !(residual < best.0) {
+        if residual >= best.0 || residual.is_nan() {
             break;
         }
         best = (residual, uv);

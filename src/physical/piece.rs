@@ -141,7 +141,7 @@ impl Piece {
     ) -> Verdict {
         let inverse = hessian.inverse();
         let distortion = magnitude(&inverse) * (*change * DVec2::ONE);
-        if !(distortion.max_element() <= MAX_DISTORTION) {
+        if !distortion.cmple(DVec2::splat(MAX_DISTORTION)).all() {
             return Verdict::Unclear;
         }
         let noise = magnitude(&inverse) * rounding;
@@ -167,11 +167,11 @@ impl Piece {
         for _ in 0..STEPS {
             at = (at + step).clamp(DVec2::ZERO, DVec2::ONE);
             step = step_from(at);
-            if step.abs().max_element() <= 0.1 * band {
+            if step.abs().cmple(DVec2::splat(0.1 * band)).all() {
                 break;
             }
         }
-        if !(step.abs().max_element() <= band) {
+        if !step.abs().cmple(DVec2::splat(band)).all() {
             return Verdict::Nowhere;
         }
         let jet = bezier::jet(whole, self.outer(at));
