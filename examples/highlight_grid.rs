@@ -1,5 +1,5 @@
 //! Time to evaluate the highlight functions of Beier & Chen 1994 on their largest grid: 100 x 100 points of one bicubic B-spline surface.
-//! They took 0.193 s on a Silicon Graphics Personal Iris (fig. 15, p. 275), contouring and display included; with the pseudo signed
+//! They took 0.193 s on a Silicon Graphics Personal Iris (fig. 15), contouring and display included; with the pseudo signed
 //! distance 15 % less. `cargo run --release --example highlight_grid`
 
 use catoptric::field::{Field, HighlightKind, Light, Method, Point};
