@@ -2,6 +2,7 @@
 
 #[path = "../common/bodies.rs"]
 mod bodies;
+mod curves;
 mod highlight;
 mod reflection;
 mod scene;
