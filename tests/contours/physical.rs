@@ -35,6 +35,11 @@ fn curves_pass_through_physical_reflections() {
             let found = physical_reflections(&surface, PathEnd::Point(at), PathEnd::Point(eye));
             let curves = trace(&surface, &Field::reflection(light), &camera, &[(1, c)], tolerance);
             for point in found.iter().filter(|point| !matches!(point.nature, Nature::Degenerate { .. })) {
+                // Round a vertex without a tangent plane there may be points at any distance, on curves shorter than the tolerance.
+                let vertex = surface.class(point.patch).map(|_| surface.evaluate(point.patch, [0.0; 2]).position);
+                if vertex.is_some_and(|vertex| vertex.distance(point.position) < tolerance) {
+                    continue;
+                }
                 let off = distance(&curves, point.position);
                 assert!(off <= 1.01 * tolerance, "{}: {point:?} is {off:e} from the curve", mesh.name);
                 worst = worst.max(off / tolerance);
