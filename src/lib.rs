@@ -10,6 +10,7 @@
 //! * [`statistics`]: what errors are summed up in;
 //! * [`field`]: cameras, lights and what a surface mirrors;
 //! * [`curves`]: contours of a field as exact curves on the surface;
+//! * [`quality`]: how its patches meet, and what that does to a field's lines;
 //! * [`gpu`]: the same limit for every pixel, in a fragment pipeline;
 //! * [`compare`]: how far a picture of other patches is from the exact one;
 //! * [`verify`]: all of it compared with OpenSubdiv;
@@ -38,6 +39,7 @@ pub mod osd;
 pub mod output;
 pub mod page;
 pub mod patch;
+pub mod quality;
 pub mod stam;
 pub mod statistics;
 pub mod verify;
