@@ -47,7 +47,8 @@ fn every_method_draws_and_says_how() {
     let mut pictures: Vec<(&str, Vec<u8>)> = Vec::new();
     for method in methods {
         let (text, pixels) = drawn(folder.path(), &["--field", method]);
-        assert!(text.contains(&format!(" --field={method} ")), "{text}");
+        let quote = if method.contains(' ') { "'" } else { "" };
+        assert!(text.contains(&format!(" {quote}--field={method}{quote} ")), "{text}");
         for (other, same) in &pictures {
             assert!(*same != pixels, "{method} draws what {other} draws");
         }

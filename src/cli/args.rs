@@ -25,6 +25,8 @@ pub(super) enum Command {
     Eval(EvalArgs),
     /// Compare the limit surface, on CPU and GPU, with OpenSubdiv
     Verify(VerifyArgs),
+    /// Find the points that mirror light points into the eye (physical reflection)
+    Glints(GlintsArgs),
     /// Say what a mesh is made of and what it will take
     Info(InfoArgs),
 }
@@ -92,6 +94,27 @@ pub(super) struct VerifyArgs {
     /// The conformance test
     #[command(flatten)]
     pub conformance: super::verify::ConformanceArgs,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct GlintsArgs {
+    /// Control mesh (.obj)
+    pub mesh: Option<PathBuf>,
+    /// A light point; give as many as there are
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true, required = true)]
+    pub light_point: Vec<glam::DVec3>,
+    /// Eye position [default: that of `render`, fitted]
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
+    pub eye: Option<glam::DVec3>,
+    /// Direction to an eye infinitely far away, instead of --eye
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true, conflicts_with = "eye")]
+    pub eye_direction: Option<glam::DVec3>,
+    /// Write JSON instead of CSV
+    #[arg(long)]
+    pub json: bool,
+    /// File to write; standard output otherwise
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

@@ -6,6 +6,7 @@ mod compare;
 mod eval;
 mod field;
 mod frames;
+mod glints;
 mod info;
 mod patches;
 mod render;
@@ -94,6 +95,7 @@ pub fn run() -> ExitCode {
         Command::Render(args) => render::run(&args),
         Command::Eval(args) => eval::run(&args),
         Command::Verify(args) => verify::run(&args),
+        Command::Glints(args) => glints::run(&args),
         Command::Info(args) => info::run(&args),
     };
     let (code, message) = match result {

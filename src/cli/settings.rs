@@ -1,77 +1,118 @@
-//! How a picture was made, in one line that goes into its file.
+//! How a file was made, in one line that goes into it.
 
 use super::render::RenderArgs;
-use crate::field::{Camera, Pattern, Projection};
+use crate::field::{Camera, Field, Pattern, Projection};
 use crate::gpu::View;
 use crate::mesh::{Boundary, Creasing, SubdivMesh};
 use clap::ValueEnum;
 use glam::DVec3;
-use std::fmt::Write;
+use std::fmt::{Display, Write};
 use std::path::Path;
+
+/// A command in one line, as a shell takes it, that makes a file again.
+pub(super) struct CommandLine(String);
+
+impl CommandLine {
+    /// The command, and the file name of its mesh: the folder is nobody's business.
+    pub(super) fn new(command: &str, mesh: Option<&Path>) -> CommandLine {
+        let mut line = CommandLine(format!("catoptric {} {command}", env!("CARGO_PKG_VERSION")));
+        if let Some(path) = mesh {
+            line.word(&path.file_name().unwrap_or_default().to_string_lossy());
+        }
+        line
+    }
+
+    fn word(&mut self, word: &str) {
+        let plain = |c: char| c.is_alphanumeric() || "_@%+=:,./-".contains(c);
+        self.0.push(' ');
+        match word.chars().all(plain) && !word.is_empty() {
+            true => self.0 += word,
+            false => self.0 += &format!("'{}'", word.replace('\'', "'\\''")),
+        }
+    }
+
+    /// A flag and its value.
+    pub(super) fn flag(&mut self, name: &str, value: impl Display) {
+        self.word(&format!("--{name}={value}"));
+    }
+
+    /// A flag without a value.
+    pub(super) fn switch(&mut self, name: &str) {
+        self.word(&format!("--{name}"));
+    }
+
+    fn vector(&mut self, name: &str, v: DVec3) {
+        self.flag(name, format_args!("{},{},{}", v.x, v.y, v.z));
+    }
+
+    /// The picture's size, and all that is to be said of the camera.
+    pub(super) fn camera(&mut self, camera: &Camera) {
+        let Camera { eye, target, up, projection, size } = *camera;
+        self.flag("size", format_args!("{}x{}", size[0], size[1]));
+        match projection {
+            Projection::Perspective { fov } => self.flag("fov", fov),
+            Projection::Orthographic { height } => {
+                self.flag("projection", "orthographic");
+                self.flag("height", height);
+            }
+        }
+        [("eye", eye), ("target", target), ("up", up)].into_iter().for_each(|(name, v)| self.vector(name, v));
+    }
+
+    /// The method and its light, whose normal and line direction are given as they were given to
+    /// [`Light::new`](crate::field::Light::new): made of those it is the same to the last digit.
+    pub(super) fn field(&mut self, field: &Field, [normal, lines]: [DVec3; 2]) {
+        let light = &field.light;
+        self.flag("field", &field.method);
+        let vectors = [("center", light.center), ("normal", normal), ("lines", lines)];
+        vectors.into_iter().for_each(|(name, v)| self.vector(&format!("light-{name}"), v));
+        self.flag("light-spacing", light.spacing);
+        if light.half.iter().all(|half| half.is_finite()) {
+            self.flag("light-size", format_args!("{},{}", 2.0 * light.half[0], 2.0 * light.half[1]));
+        }
+    }
+
+    /// The line, with the digest of the mesh ([`mesh_digest`]) in a comment.
+    pub(super) fn finish(self, mesh: u64) -> String {
+        format!("{} # mesh {mesh:016x}", self.0)
+    }
+}
 
 /// The command that makes the picture again, with everything in it that was fitted, and digests of the files that it
 /// reads. On one adapter, pictures of the same line are the same.
 ///
 /// `mesh`: the digest of the mesh ([`mesh_digest`]).
 pub(super) fn made_by(args: &RenderArgs, mesh: u64, view: &View) -> String {
-    let Camera { eye, target, up, projection, size } = view.camera;
-    let light = view.light();
-    let mut text = format!("catoptric {} render", env!("CARGO_PKG_VERSION"));
-    let mut add = |flag: &str, value: String| {
-        text += &match flag {
-            "" => format!(" {value}"),
-            flag => format!(" --{flag}={value}"),
-        }
-    };
-    let vector = |v: DVec3| format!("{},{},{}", v.x, v.y, v.z);
-    // Its folder is nobody's business.
-    let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    if let Some(path) = &args.mesh {
-        add("", name(path));
-    }
-    add("size", format!("{}x{}", size[0], size[1]));
-    match projection {
-        Projection::Perspective { fov } => add("fov", fov.to_string()),
-        Projection::Orthographic { height } => {
-            add("projection", "orthographic".to_owned());
-            add("height", height.to_string());
-        }
-    }
-    [("eye", eye), ("target", target), ("up", up)].into_iter().for_each(|(flag, v)| add(flag, vector(v)));
-    add("field", view.field.method.to_string());
-    let directions = [("light-center", light.center), ("light-normal", light.normal()), ("light-lines", light.axes[1])];
-    directions.into_iter().for_each(|(flag, v)| add(flag, vector(v)));
-    add("light-spacing", light.spacing.to_string());
-    if light.half.iter().all(|half| half.is_finite()) {
-        add("light-size", format!("{},{}", 2.0 * light.half[0], 2.0 * light.half[1]));
-    }
-    add("pattern", args.pattern.name(&view.pattern));
+    let mut line = CommandLine::new("render", args.mesh.as_deref());
+    line.camera(&view.camera);
+    line.field(&view.field, [view.light().normal(), view.light().axes[1]]);
+    line.flag("pattern", args.pattern.name(&view.pattern));
     match &view.pattern {
-        Pattern::Stripes { width } | Pattern::Lattice { width } => add("light-width", width.to_string()),
-        Pattern::Circles { radius } => add("light-width", (2.0 * radius).to_string()),
-        Pattern::Band { radius } => add("light-width", (2.0 * radius).to_string()),
+        Pattern::Stripes { width } | Pattern::Lattice { width } => line.flag("light-width", width),
+        Pattern::Circles { radius } => line.flag("light-width", 2.0 * radius),
+        Pattern::Band { radius } => line.flag("light-width", 2.0 * radius),
         Pattern::Heat { .. } | Pattern::Picture(_) => {}
     }
-    add("pipeline", value_name(&args.pipeline));
+    line.flag("pipeline", value_name(&args.pipeline));
     if view.enlarge != 1.0 {
-        add("enlarge", view.enlarge.to_string());
+        line.flag("enlarge", view.enlarge);
     }
-    add("patches", args.patches.patches.to_string());
+    line.flag("patches", args.patches.patches);
     if let Some(end_caps) = &args.patches.end_caps {
-        add("end-caps", value_name(end_caps));
+        line.flag("end-caps", value_name(end_caps));
     }
-    add("tables", args.layout.to_string());
+    line.flag("tables", args.layout);
     if let Some(level) = view.proxy_level {
-        add("proxy-level", level.to_string());
+        line.flag("proxy-level", level);
     }
-    add("samples", view.samples.to_string());
+    line.flag("samples", view.samples);
     if let Some(show) = &args.show {
-        add("show", value_name(show));
+        line.flag("show", value_name(show));
     }
     if args.patches.compare {
-        text += " --compare";
+        line.switch("compare");
     }
-    let _ = write!(text, " # mesh {mesh:016x}");
+    let mut text = line.finish(mesh);
     if let Pattern::Picture(picture) = &view.pattern {
         let mut digest = Digest::new();
         digest.bytes(bytemuck::bytes_of(&picture.size));
@@ -125,6 +166,16 @@ pub(super) fn mesh_digest(mesh: &SubdivMesh) -> u64 {
 mod tests {
     use super::*;
     use crate::mesh;
+
+    #[test]
+    fn words_are_quoted_as_shells_want_it() {
+        let mut line = CommandLine::new("lines", Some(Path::new("/home/a/it's a car.obj")));
+        line.flag("field", "curve:x^2 - y^2");
+        line.flag("light-center", "-1,2.5,1e-7");
+        line.switch("hidden");
+        let expected = r"'it'\''s a car.obj' '--field=curve:x^2 - y^2' --light-center=-1,2.5,1e-7 --hidden # mesh 000000000000002a";
+        assert!(line.finish(42).ends_with(&format!(" lines {expected}")));
+    }
 
     #[test]
     fn digests_are_those_of_fnv_and_tell_meshes_apart() {

@@ -3,6 +3,7 @@
 mod comparison;
 mod exr;
 mod heat;
+mod lines;
 mod png;
 mod sheet;
 mod whole;
@@ -10,6 +11,7 @@ mod whole;
 pub use comparison::{LINES_PX, NORMALS_DEG, comparison_panels};
 pub use exr::{Layers, NO_FACE, read_exr_made_by, world_to_camera, world_to_ndc, write_exr};
 pub use heat::{Heat, Scale, heat, heat_of};
+pub use lines::{Drawn, Lines, LinesFormat, MM_PER_PIXEL, in_picture};
 pub use png::{png_bytes, read_png_made_by, write_png};
 pub use sheet::{Panel, draw_legend, sheet};
 pub use whole::{OutputError, WriteSeek, check_writable, discard_unfinished, write_whole};

@@ -1,6 +1,6 @@
 //! tobj reads the same geometry: the same points at the corners of the same faces.
 //!
-//! tobj re-indexes vertices a group, so faces are compared by positions. It parses to f32.
+//! tobj re-indexes vertices a group, so faces are compared by positions, to the last bit.
 
 use std::path::{Path, PathBuf};
 
@@ -8,7 +8,7 @@ use catoptric::mesh::{self, SubdivMesh};
 
 use crate::{manifest_path, obj_files};
 
-type Polygon = Vec<[f32; 3]>;
+type Polygon = Vec<[f64; 3]>;
 
 /// The faces of all of tobj's models, as positions.
 fn by_tobj(path: &Path) -> Vec<Polygon> {
@@ -30,18 +30,14 @@ fn by_tobj(path: &Path) -> Vec<Polygon> {
 }
 
 fn by_us(mesh: &SubdivMesh) -> Vec<Polygon> {
-    let point = |&v: &u32| mesh.points[v as usize].as_vec3().to_array();
+    let point = |&v: &u32| mesh.points[v as usize].to_array();
     mesh.faces().map(|(_, face)| face.iter().map(point).collect()).collect()
 }
 
-/// Both round a decimal number to f32, one of them by way of f64: an ulp apart at most.
 fn assert_same(ours: &[Polygon], theirs: &[Polygon], name: &str) {
     assert_eq!(ours.len(), theirs.len(), "{name}");
     for (i, (a, b)) in ours.iter().zip(theirs).enumerate() {
-        assert_eq!(a.len(), b.len(), "{name}, face {i}");
-        for (p, q) in a.as_flattened().iter().zip(b.as_flattened()) {
-            assert!((p - q).abs() <= f32::EPSILON * q.abs(), "{name}, face {i}: {a:?} {b:?}");
-        }
+        assert_eq!(a, b, "{name}, face {i}");
     }
 }
 
