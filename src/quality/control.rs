@@ -87,7 +87,7 @@ impl Control<'_> {
     pub fn line(&self, patch: &Patch, edge: u8) -> Line {
         // Edge e of the cell, counted from v = 0 counter-clockwise.
         let cell_edge = (edge + patch.rotation) % 4;
-        let across = usize::from(cell_edge % 2 == 0);
+        let across = usize::from(cell_edge.is_multiple_of(2));
         let far = matches!(cell_edge, 1 | 2);
         let place = u32::from(patch.origin[across]) + u32::from(far);
         if place != 0 && place != 1 << patch.depth[across] {
