@@ -1,0 +1,267 @@
+//! A contour within one cell: its ends on the cell's border, and points between them.
+
+use super::model::Rect;
+use super::piece::{Piece, Scene};
+use crate::field::{Contour, weighted};
+use glam::DVec3;
+
+/// A contour within one cell, or the valid part of it.
+#[derive(Debug)]
+pub(super) struct Arc {
+    pub patch: usize,
+    /// Index of the contour.
+    pub wanted: usize,
+    /// Patch-local parameters.
+    pub places: Vec<[f64; 2]>,
+    /// World space, one a place.
+    pub points: Vec<DVec3>,
+    pub ends: [End; 2],
+}
+
+/// Where an arc ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum End {
+    /// On a side of the cell.
+    Side(Side),
+    /// Inside it: beyond, the zero set is not the contour.
+    Cut,
+}
+
+/// A place on a line of the patch on which one parameter is constant.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Side {
+    /// The constant parameter: 0 for u, 1 for v.
+    pub axis: usize,
+    pub constant: f64,
+    /// The other parameter.
+    pub along: f64,
+    /// The cell lies where the constant parameter is larger.
+    pub above: bool,
+    /// Length of the cell's side, in the patch's parameter: nothing else of the contour is on it.
+    pub length: f64,
+}
+
+/// A point of the contour while it is traced.
+#[derive(Debug, Clone, Copy)]
+struct Node {
+    /// Parameters of the piece.
+    at: [f64; 2],
+    position: DVec3,
+    /// V, above 0 where the zero set is the contour.
+    valid: f64,
+}
+
+/// Smallest share of the tolerance that chords are held to at the places where they are measured.
+const SHARE: f64 = 0.7;
+/// Most halvings of an arc.
+const HALVINGS: u32 = 16;
+/// Halvings of an arc, at most, that look for a place where it ceases to be valid; and the part of the largest V below which the
+/// smallest one may be on its way to 0.
+const HALVINGS_CUT: u32 = 4;
+const SAFE: f64 = 0.3;
+
+/// Draws arcs of one contour on one piece.
+pub(super) struct Tracer<'a> {
+    pub scene: &'a Scene<'a>,
+    pub piece: &'a Piece,
+    pub contour: &'a Contour,
+    pub wanted: usize,
+    pub tolerance: f64,
+}
+
+impl Tracer<'_> {
+    /// F at parameters of the piece.
+    fn value(&self, at: [f64; 2]) -> Option<f64> {
+        Some(weighted(&self.contour.zero, &self.piece.functions(self.scene, at)?))
+    }
+
+    fn node(&self, at: [f64; 2]) -> Node {
+        let valid = self.contour.valid.map_or(1.0, |weights| {
+            self.piece.functions(self.scene, at).map_or(-1.0, |functions| weighted(&weights, &functions))
+        });
+        Node { at, position: self.piece.position(at), valid }
+    }
+
+    /// The arc through a cell on which F is monotone along `axis`, so that there is one value of that parameter for each of the other.
+    pub fn simple(&self, rect: Rect, axis: usize, corners: &[f64; 4], out: &mut Vec<Arc>) {
+        let crossings = self.crossings(&rect, corners);
+        // Two by the signs at the corners; rounding may leave a corner without any.
+        let [from, to] = crossings[..] else { return };
+        let [first, last] = [from, to].map(|(_, at)| self.node(at));
+        let mut nodes = vec![first];
+        self.fill(&rect, axis, [first, last], 0, &mut nodes);
+        nodes.push(last);
+        self.emit_valid(&rect, axis, &nodes, [from.0, to.0], out);
+    }
+
+    /// Chords through a cell that is not divided further. Where two lines meet in a saddle, its middle says which ends belong
+    /// together.
+    pub fn smallest(&self, rect: Rect, corners: &[f64; 4], out: &mut Vec<Arc>) {
+        let crossings = self.crossings(&rect, corners);
+        let mut pairs = Vec::new();
+        match crossings[..] {
+            [a, b] => pairs.push([a, b]),
+            // In the order left, right, low, high: each corner of the sign that the middle has not is cut off.
+            [left, right, low, high] => {
+                let Some(middle) = self.value(rect.at([0.5; 2])) else { return };
+                if (middle > 0.0) == (corners[0] > 0.0) {
+                    pairs.extend([[left, high], [low, right]]);
+                } else {
+                    pairs.extend([[left, low], [right, high]]);
+                }
+            }
+            _ => {}
+        }
+        for [from, to] in pairs {
+            let nodes = [self.node(from.1), self.node(to.1)];
+            if nodes.iter().all(|node| node.valid > 0.0) {
+                out.push(self.arc(&nodes, [End::Side(from.0), End::Side(to.0)]));
+            }
+        }
+    }
+
+    /// Where the contour crosses the sides of a cell, at most once each: left, right, low, high.
+    fn crossings(&self, rect: &Rect, corners: &[f64; 4]) -> Vec<(Side, [f64; 2])> {
+        let sides = [(0, false, [0, 2]), (0, true, [1, 3]), (1, false, [0, 1]), (1, true, [2, 3])];
+        let crossing = |(axis, end, [first, last]): (usize, bool, [usize; 2])| {
+            let signs = [corners[first], corners[last]];
+            if (signs[0] > 0.0) == (signs[1] > 0.0) {
+                return None;
+            }
+            let constant = if end { rect.high[axis] } else { rect.low[axis] };
+            let place = |along: f64| if axis == 0 { [constant, along] } else { [along, constant] };
+            let range = [rect.low[1 - axis], rect.high[1 - axis]];
+            let along = root(|x| self.value(place(x)), range, signs)?;
+            let at = self.piece.to_patch(place(along));
+            let side = Side {
+                axis,
+                constant: at[axis],
+                along: at[1 - axis],
+                above: !end,
+                length: (range[1] - range[0]) * self.piece.size,
+            };
+            Some((side, place(along)))
+        };
+        sides.into_iter().filter_map(crossing).collect()
+    }
+
+    /// The node of a cell at one value of the parameter that is not monotone.
+    fn across(&self, rect: &Rect, axis: usize, along: f64) -> Option<Node> {
+        let place = |x: f64| if axis == 0 { [x, along] } else { [along, x] };
+        let range = [rect.low[axis], rect.high[axis]];
+        let [low, high] = range.map(|x| self.value(place(x)));
+        let signs = [low?, high?];
+        if (signs[0] > 0.0) == (signs[1] > 0.0) {
+            return None;
+        }
+        Some(self.node(place(root(|x| self.value(place(x)), range, signs)?)))
+    }
+
+    /// Adds nodes between two until chords are within the tolerance, and V does not come near 0 between them unseen.
+    fn fill(&self, rect: &Rect, axis: usize, [from, to]: [Node; 2], halvings: u32, out: &mut Vec<Node>) {
+        let [a, b] = [from, to].map(|node| node.at[1 - axis]);
+        let is_safe = |nodes: &[Node]| {
+            let valid = nodes.iter().map(|node| node.valid);
+            halvings >= HALVINGS_CUT || valid.clone().fold(f64::INFINITY, f64::min) > SAFE * valid.fold(0.0, f64::max)
+        };
+        let is_short = from.position.distance(to.position) <= self.tolerance;
+        if halvings == HALVINGS || (is_short && is_safe(&[from, to])) {
+            return;
+        }
+        let at = |part: f64| self.across(rect, axis, a + part * (b - a));
+        let far = |node: &Node| distance(node.position, from.position, to.position) > SHARE * self.tolerance;
+        let Some(middle) = at(0.5) else { return };
+        // Bends to both sides may meet the chord in the middle.
+        let bent = || far(&middle) || [0.2, 0.8].into_iter().any(|part| at(part).is_some_and(|node| far(&node)));
+        if !is_safe(&[from, middle, to]) || bent() {
+            self.fill(rect, axis, [from, middle], halvings + 1, out);
+            out.push(middle);
+            self.fill(rect, axis, [middle, to], halvings + 1, out);
+        }
+    }
+
+    /// The valid parts of a chain of nodes, cut where V passes 0.
+    fn emit_valid(&self, rect: &Rect, axis: usize, nodes: &[Node], sides: [Side; 2], out: &mut Vec<Arc>) {
+        let mut run: Vec<Node> = Vec::new();
+        let mut start = End::Side(sides[0]);
+        for (k, &node) in nodes.iter().enumerate() {
+            let is_valid = node.valid > 0.0;
+            if k > 0 && is_valid != (nodes[k - 1].valid > 0.0) {
+                let edge =
+                    self.last_valid(rect, axis, if is_valid { [node, nodes[k - 1]] } else { [nodes[k - 1], node] });
+                if is_valid {
+                    start = End::Cut;
+                    run.push(edge);
+                } else {
+                    run.push(edge);
+                    out.push(self.arc(&run, [start, End::Cut]));
+                    run.clear();
+                }
+            }
+            if is_valid {
+                run.push(node);
+            }
+        }
+        if run.len() > 1 {
+            out.push(self.arc(&run, [start, End::Side(sides[1])]));
+        }
+    }
+
+    /// The last node with V above 0 between one that has it and one that has not.
+    fn last_valid(&self, rect: &Rect, axis: usize, [mut valid, mut other]: [Node; 2]) -> Node {
+        for _ in 0..60 {
+            let along = 0.5 * (valid.at[1 - axis] + other.at[1 - axis]);
+            match self.across(rect, axis, along) {
+                Some(node) if node.valid > 0.0 => valid = node,
+                Some(node) => other = node,
+                None => break,
+            }
+        }
+        valid
+    }
+
+    fn arc(&self, nodes: &[Node], ends: [End; 2]) -> Arc {
+        Arc {
+            patch: self.piece.patch,
+            wanted: self.wanted,
+            places: nodes.iter().map(|node| self.piece.to_patch(node.at)).collect(),
+            points: nodes.iter().map(|node| node.position).collect(),
+            ends,
+        }
+    }
+}
+
+/// Distance of a point from a segment.
+pub(super) fn distance(p: DVec3, a: DVec3, b: DVec3) -> f64 {
+    let (ab, ap) = (b - a, p - a);
+    let t = ab.dot(ap) / ab.length_squared();
+    (ap - ab * if t.is_finite() { t.clamp(0.0, 1.0) } else { 0.0 }).length()
+}
+
+/// A zero of a function between places of different sign, to the last digits: false position with the weights of Anderson & Bjorck
+/// (1973), and halves where these are slow. `None` where the function is undefined on the way.
+fn root(f: impl Fn(f64) -> Option<f64>, range: [f64; 2], signs: [f64; 2]) -> Option<f64> {
+    let ([mut a, mut b], [mut fa, mut fb]) = (range, signs);
+    for step in 0..200 {
+        let width = (b - a).abs();
+        let near = if fa.abs() < fb.abs() { a } else { b };
+        if fa == 0.0 || fb == 0.0 || width <= 2.0 * f64::EPSILON * near.abs().max(1e-3 * (range[1] - range[0])) {
+            return Some(near);
+        }
+        let x = if step % 8 == 7 { 0.5 * (a + b) } else { a - fa * (b - a) / (fb - fa) };
+        let x = if x > a.min(b) && x < a.max(b) { x } else { 0.5 * (a + b) };
+        if x == a || x == b {
+            return Some(near);
+        }
+        let fx = f(x)?;
+        // a is the older of the two.
+        if (fx > 0.0) != (fb > 0.0) {
+            (a, fa) = (b, fb);
+        } else {
+            let weight = 1.0 - fx / fb;
+            fa *= if weight > 0.0 { weight } else { 0.5 };
+        }
+        (b, fb) = (x, fx);
+    }
+    Some(b)
+}
