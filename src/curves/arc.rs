@@ -1,6 +1,6 @@
 //! A contour within one cell: its ends on the cell's border, and points between them.
 
-use super::model::Rect;
+use super::model::{Line, Rect, Sum};
 use super::piece::{Piece, Scene};
 use crate::field::{Contour, weighted};
 use glam::DVec3;
@@ -60,6 +60,12 @@ const HALVINGS: u32 = 16;
 const HALVINGS_CUT: u32 = 4;
 const SAFE: f64 = 0.3;
 
+/// A cell, and F on it.
+pub(super) struct Cell<'a> {
+    pub rect: Rect,
+    pub sum: &'a Sum,
+}
+
 /// Draws arcs of one contour on one piece.
 pub(super) struct Tracer<'a> {
     pub scene: &'a Scene<'a>,
@@ -83,28 +89,28 @@ impl Tracer<'_> {
     }
 
     /// The arc through a cell on which F is monotone along `axis`, so that there is one value of that parameter for each of the other.
-    pub fn simple(&self, rect: Rect, axis: usize, corners: &[f64; 4], out: &mut Vec<Arc>) {
-        let crossings = self.crossings(&rect, corners);
+    pub fn simple(&self, cell: Cell, axis: usize, out: &mut Vec<Arc>) {
+        let crossings = self.crossings(&cell);
         // Two by the signs at the corners; rounding may leave a corner without any.
         let [from, to] = crossings[..] else { return };
         let [first, last] = [from, to].map(|(_, at)| self.node(at));
         let mut nodes = vec![first];
-        self.fill(&rect, axis, [first, last], 0, &mut nodes);
+        self.fill(&cell, axis, [first, last], 0, &mut nodes);
         nodes.push(last);
-        self.emit_valid(&rect, axis, &nodes, [from.0, to.0], out);
+        self.emit_valid(&cell, axis, &nodes, [from.0, to.0], out);
     }
 
     /// Chords through a cell that is not divided further. Where two lines meet in a saddle, its middle says which ends belong
     /// together.
-    pub fn smallest(&self, rect: Rect, corners: &[f64; 4], out: &mut Vec<Arc>) {
-        let crossings = self.crossings(&rect, corners);
+    pub fn smallest(&self, cell: Cell, out: &mut Vec<Arc>) {
+        let crossings = self.crossings(&cell);
         let mut pairs = Vec::new();
         match crossings[..] {
             [a, b] => pairs.push([a, b]),
             // In the order left, right, low, high: each corner of the sign that the middle has not is cut off.
             [left, right, low, high] => {
-                let Some(middle) = self.value(rect.at([0.5; 2])) else { return };
-                if (middle > 0.0) == (corners[0] > 0.0) {
+                let Some(middle) = self.value(cell.rect.at([0.5; 2])) else { return };
+                if (middle > 0.0) == (cell.sum.corners[0] > 0.0) {
                     pairs.extend([[left, high], [low, right]]);
                 } else {
                     pairs.extend([[left, low], [right, high]]);
@@ -121,17 +127,18 @@ impl Tracer<'_> {
     }
 
     /// Where the contour crosses the sides of a cell, at most once each: left, right, low, high.
-    fn crossings(&self, rect: &Rect, corners: &[f64; 4]) -> Vec<(Side, [f64; 2])> {
+    fn crossings(&self, Cell { rect, sum }: &Cell) -> Vec<(Side, [f64; 2])> {
         let sides = [(0, false, [0, 2]), (0, true, [1, 3]), (1, false, [0, 1]), (1, true, [2, 3])];
         let crossing = |(axis, end, [first, last]): (usize, bool, [usize; 2])| {
-            let signs = [corners[first], corners[last]];
+            let signs = [sum.corners[first], sum.corners[last]];
             if (signs[0] > 0.0) == (signs[1] > 0.0) {
                 return None;
             }
             let constant = if end { rect.high[axis] } else { rect.low[axis] };
             let place = |along: f64| if axis == 0 { [constant, along] } else { [along, constant] };
             let range = [rect.low[1 - axis], rect.high[1 - axis]];
-            let along = root(|x| self.value(place(x)), range, signs)?;
+            let line = sum.line(1 - axis, if end { 1.0 } else { 0.0 });
+            let along = zero(|x| self.value(place(x)), range, signs[0] > 0.0, &line)?;
             let at = self.piece.to_patch(place(along));
             let side = Side {
                 axis,
@@ -146,49 +153,51 @@ impl Tracer<'_> {
     }
 
     /// The node of a cell at one value of the parameter that is not monotone.
-    fn across(&self, rect: &Rect, axis: usize, along: f64) -> Option<Node> {
+    fn across(&self, Cell { rect, sum }: &Cell, axis: usize, along: f64) -> Option<Node> {
         let place = |x: f64| if axis == 0 { [x, along] } else { [along, x] };
+        let [low, high] = [rect.low[1 - axis], rect.high[1 - axis]];
+        let line = sum.line(axis, (along - low) / (high - low));
         let range = [rect.low[axis], rect.high[axis]];
-        let [low, high] = range.map(|x| self.value(place(x)));
-        let signs = [low?, high?];
-        if (signs[0] > 0.0) == (signs[1] > 0.0) {
-            return None;
-        }
-        Some(self.node(place(root(|x| self.value(place(x)), range, signs)?)))
+        Some(self.node(place(zero(|x| self.value(place(x)), range, line.slope(0.5) < 0.0, &line)?)))
     }
 
     /// Adds nodes between two until chords are within the tolerance, and V does not come near 0 between them unseen.
-    fn fill(&self, rect: &Rect, axis: usize, [from, to]: [Node; 2], halvings: u32, out: &mut Vec<Node>) {
+    fn fill(&self, cell: &Cell, axis: usize, [from, to]: [Node; 2], halvings: u32, out: &mut Vec<Node>) {
         let [a, b] = [from, to].map(|node| node.at[1 - axis]);
         let is_safe = |nodes: &[Node]| {
-            let valid = nodes.iter().map(|node| node.valid);
-            halvings >= HALVINGS_CUT || valid.clone().fold(f64::INFINITY, f64::min) > SAFE * valid.fold(0.0, f64::max)
+            let signed = |sign: f64| {
+                let valid = nodes.iter().map(|node| sign * node.valid);
+                valid.clone().fold(f64::INFINITY, f64::min) > SAFE * valid.fold(0.0, f64::max)
+            };
+            halvings >= HALVINGS_CUT || signed(1.0) || signed(-1.0)
         };
         let is_short = from.position.distance(to.position) <= self.tolerance;
-        if halvings == HALVINGS || (is_short && is_safe(&[from, to])) {
+        // What is not the contour needs no points.
+        let is_idle = is_short || (from.valid < 0.0 && to.valid < 0.0);
+        if halvings == HALVINGS || (is_idle && is_safe(&[from, to])) {
             return;
         }
-        let at = |part: f64| self.across(rect, axis, a + part * (b - a));
+        let at = |part: f64| self.across(cell, axis, a + part * (b - a));
         let far = |node: &Node| distance(node.position, from.position, to.position) > SHARE * self.tolerance;
         let Some(middle) = at(0.5) else { return };
         // Bends to both sides may meet the chord in the middle.
-        let bent = || far(&middle) || [0.2, 0.8].into_iter().any(|part| at(part).is_some_and(|node| far(&node)));
+        let bent = || far(&middle) || at(0.25).is_some_and(|node| far(&node));
         if !is_safe(&[from, middle, to]) || bent() {
-            self.fill(rect, axis, [from, middle], halvings + 1, out);
+            self.fill(cell, axis, [from, middle], halvings + 1, out);
             out.push(middle);
-            self.fill(rect, axis, [middle, to], halvings + 1, out);
+            self.fill(cell, axis, [middle, to], halvings + 1, out);
         }
     }
 
     /// The valid parts of a chain of nodes, cut where V passes 0.
-    fn emit_valid(&self, rect: &Rect, axis: usize, nodes: &[Node], sides: [Side; 2], out: &mut Vec<Arc>) {
+    fn emit_valid(&self, cell: &Cell, axis: usize, nodes: &[Node], sides: [Side; 2], out: &mut Vec<Arc>) {
         let mut run: Vec<Node> = Vec::new();
         let mut start = End::Side(sides[0]);
         for (k, &node) in nodes.iter().enumerate() {
             let is_valid = node.valid > 0.0;
             if k > 0 && is_valid != (nodes[k - 1].valid > 0.0) {
                 let edge =
-                    self.last_valid(rect, axis, if is_valid { [node, nodes[k - 1]] } else { [nodes[k - 1], node] });
+                    self.last_valid(cell, axis, if is_valid { [node, nodes[k - 1]] } else { [nodes[k - 1], node] });
                 if is_valid {
                     start = End::Cut;
                     run.push(edge);
@@ -208,10 +217,10 @@ impl Tracer<'_> {
     }
 
     /// The last node with V above 0 between one that has it and one that has not.
-    fn last_valid(&self, rect: &Rect, axis: usize, [mut valid, mut other]: [Node; 2]) -> Node {
+    fn last_valid(&self, cell: &Cell, axis: usize, [mut valid, mut other]: [Node; 2]) -> Node {
         for _ in 0..60 {
             let along = 0.5 * (valid.at[1 - axis] + other.at[1 - axis]);
-            match self.across(rect, axis, along) {
+            match self.across(cell, axis, along) {
                 Some(node) if node.valid > 0.0 => valid = node,
                 Some(node) => other = node,
                 None => break,
@@ -238,30 +247,44 @@ pub(super) fn distance(p: DVec3, a: DVec3, b: DVec3) -> f64 {
     (ap - ab * if t.is_finite() { t.clamp(0.0, 1.0) } else { 0.0 }).length()
 }
 
-/// A zero of a function between places of different sign, to the last digits: false position with the weights of Anderson & Bjorck
-/// (1973), and halves where these are slow. `None` where the function is undefined on the way.
-fn root(f: impl Fn(f64) -> Option<f64>, range: [f64; 2], signs: [f64; 2]) -> Option<f64> {
-    let ([mut a, mut b], [mut fa, mut fb]) = (range, signs);
-    for step in 0..200 {
-        let width = (b - a).abs();
-        let near = if fa.abs() < fb.abs() { a } else { b };
-        if fa == 0.0 || fb == 0.0 || width <= 2.0 * f64::EPSILON * near.abs().max(1e-3 * (range[1] - range[0])) {
-            return Some(near);
+/// A zero of a function that is monotone on a range, to the last digits; `positive`: at the range's start it is above 0. From the zero of
+/// the polynomial that stands in for it by secants, which a tenth step or a third value finds; where they fail, by halves. `None`
+/// where the function is undefined on the way.
+fn zero(f: impl Fn(f64) -> Option<f64>, [mut low, mut high]: [f64; 2], positive: bool, line: &Line) -> Option<f64> {
+    let width = high - low;
+    let smallest = 2.0 * f64::EPSILON * high.abs().max(low.abs()).max(width);
+    let start = line.zero();
+    let slope = line.slope(start) / width;
+    let mut x = low + start * width;
+    let mut value = f(x)?;
+    let mut step = -value / slope;
+    for _ in 0..100 {
+        if value == 0.0 || high - low <= smallest {
+            return Some(x);
         }
-        let x = if step % 8 == 7 { 0.5 * (a + b) } else { a - fa * (b - a) / (fb - fa) };
-        let x = if x > a.min(b) && x < a.max(b) { x } else { 0.5 * (a + b) };
-        if x == a || x == b {
-            return Some(near);
-        }
-        let fx = f(x)?;
-        // a is the older of the two.
-        if (fx > 0.0) != (fb > 0.0) {
-            (a, fa) = (b, fb);
+        if (value > 0.0) == positive {
+            low = x;
         } else {
-            let weight = 1.0 - fx / fb;
-            fa *= if weight > 0.0 { weight } else { 0.5 };
+            high = x;
         }
-        (b, fb) = (x, fx);
+        let is_last = step.abs() <= smallest;
+        let mut next = x + step;
+        if !(next > low && next < high) {
+            // The end itself may be the zero.
+            if is_last {
+                return Some(x);
+            }
+            next = 0.5 * (low + high);
+        }
+        let last = std::mem::replace(&mut x, next);
+        let new = f(x)?;
+        let secant = -new * (x - last) / (new - value);
+        value = new;
+        if is_last {
+            return Some(x);
+        }
+        // Along rounding: secants say nothing any more.
+        step = if secant.is_finite() { secant } else { 0.5 * (high - low) };
     }
-    Some(b)
+    Some(x)
 }

@@ -1,6 +1,7 @@
 //! Divides pieces until the contours on each cell have a shape that its corners tell.
 
-use super::arc::{Arc, Tracer};
+use super::arc::{Arc, Cell, Tracer};
+use super::levels::Approach;
 use super::model::{Model, Rect, Sum, Undefined};
 use super::piece::{Piece, Scene};
 use crate::field::Contour;
@@ -18,7 +19,7 @@ pub(super) struct Wanted {
 #[derive(Debug, Clone, Copy)]
 struct Candidate {
     wanted: usize,
-    /// Error of the model one division before, and for how many divisions it has not become smaller.
+    /// Error of an earlier model, and for how many divisions it has hardly become smaller.
     error: f64,
     stuck: u8,
 }
@@ -27,14 +28,12 @@ struct Candidate {
 const DEEPEST: u8 = 24;
 /// Divisions of cells that the field is undefined on mostly (its border is a curve), and at a few points (at one place).
 const DEEPEST_UNDEFINED: [u8; 2] = [6, 14];
-/// Divisions for which the error of a model may stay what it is: at kinks it halves, at jumps it stays.
-const STUCK: u8 = 8;
+/// Divisions for which the error of a model may stay what it is, more or less, where it is no better than the range of its values over
+/// this factor: at kinks it halves each time, at jumps of the field and in rounding it stays.
+const STUCK: u8 = 4;
+const POOR: f64 = 64.0;
 /// Levels of an extraordinary vertex: the last ones are left for rounding.
 const DEEPEST_LEVEL: usize = LEVELS - 8;
-/// What the values on the square that a level leaves may exceed those of the level by, over their range. A field that is linear on the
-/// tangent plane exceeds nothing; curvatures grow from level to level, by less than the factor that this allows.
-const EXCESS: f64 = 1.0;
-
 /// What a cell is to a contour.
 enum Outcome {
     Empty,
@@ -59,7 +58,7 @@ pub(super) fn divide(scene: Scene, patch: usize, wanted: &[Wanted], tolerance: f
     match Piece::regular(patch, &net) {
         Some(piece) => {
             let model = Model::new(&scene, &piece, &Rect::WHOLE);
-            divider.cell(&piece, Rect::WHOLE, model, all, 0);
+            divider.cell(&piece, Rect::WHOLE, model.as_ref().map_err(|undefined| *undefined), all, 0);
         }
         None => divider.levels(patch, net, all),
     }
@@ -69,29 +68,25 @@ pub(super) fn divide(scene: Scene, patch: usize, wanted: &[Wanted], tolerance: f
 impl Divider<'_> {
     /// Level by level towards an extraordinary vertex, while contours may be there.
     fn levels(&mut self, patch: usize, mut net: Net, mut candidates: Vec<Candidate>) {
+        let Scene { surface, field, .. } = self.scene;
+        let is_smooth = surface.class(patch).is_some_and(|class| surface.classes()[class].has_tangent_plane());
+        let vertex = (is_smooth && !field.method.reads_curvature()).then(|| self.scene.functions(patch, [0.0; 2]));
+        let vertex = vertex.flatten();
+        let mut approaches = vec![Approach::NONE; self.wanted.len()];
         for level in 1..=DEEPEST_LEVEL {
             if matches!(&net, Net::Irregular { levels, .. } if levels.len() < level) {
-                net = self.scene.surface.net(patch, if level < 8 { 8 } else { DEEPEST_LEVEL });
+                net = surface.net(patch, if level < 8 { 8 } else { DEEPEST_LEVEL });
             }
             let pieces = Piece::level(patch, &net, level);
             let models: Vec<_> = pieces.iter().map(|piece| Model::new(&self.scene, piece, &Rect::WHOLE)).collect();
-            // Before the models are gone: what may be further in.
-            let further = |candidate: &Candidate| {
-                let weights = &self.wanted[candidate.wanted].contour.zero;
-                let mut range = [f64::INFINITY, f64::NEG_INFINITY];
-                for model in &models {
-                    let Ok(model) = model else { return level < 2 * usize::from(DEEPEST_UNDEFINED[1]) };
-                    let [low, high] = model.sum(weights).range();
-                    range = [range[0].min(low), range[1].max(high)];
-                }
-                let excess = EXCESS * (range[1] - range[0]);
-                range[0] - excess <= 0.0 && range[1] + excess >= 0.0
-            };
-            let inner = candidates.iter().filter(|candidate| further(candidate)).copied().collect();
-            for (piece, model) in pieces.iter().zip(models) {
-                self.cell(piece, Rect::WHOLE, model, candidates.clone(), 0);
+            for (piece, model) in pieces.iter().zip(&models) {
+                self.cell(piece, Rect::WHOLE, model.as_ref().map_err(|undefined| *undefined), candidates.clone(), 0);
             }
-            candidates = inner;
+            let models: Vec<_> = models.into_iter().map(Result::ok).collect();
+            candidates.retain(|candidate| {
+                let weights = &self.wanted[candidate.wanted].contour.zero;
+                approaches[candidate.wanted].may_arrive(level, &models, weights, vertex.as_ref())
+            });
             if candidates.is_empty() {
                 break;
             }
@@ -102,12 +97,12 @@ impl Divider<'_> {
         &mut self,
         piece: &Piece,
         rect: Rect,
-        model: Result<Model, Undefined>,
+        model: Result<&Model, Undefined>,
         mut candidates: Vec<Candidate>,
         depth: u8,
     ) {
         match model {
-            Ok(model) => candidates.retain_mut(|candidate| !self.settle(piece, rect, &model, candidate, depth)),
+            Ok(model) => candidates.retain_mut(|candidate| !self.settle(piece, rect, model, candidate, depth)),
             Err(undefined) if depth >= DEEPEST_UNDEFINED[usize::from(undefined == Undefined::Partly)] => return,
             Err(_) => {}
         }
@@ -116,7 +111,7 @@ impl Divider<'_> {
         }
         for quarter in rect.quarters() {
             let model = Model::new(&self.scene, piece, &quarter);
-            self.cell(piece, quarter, model, candidates.clone(), depth + 1);
+            self.cell(piece, quarter, model.as_ref().map_err(|undefined| *undefined), candidates.clone(), depth + 1);
         }
     }
 
@@ -129,18 +124,22 @@ impl Divider<'_> {
         match outcome(&sum, valid.as_ref()) {
             Outcome::Empty => true,
             Outcome::Simple(axis) => {
-                tracer.simple(rect, axis, &sum.corners, &mut self.arcs);
+                tracer.simple(Cell { rect, sum: &sum }, axis, &mut self.arcs);
                 true
             }
             Outcome::Unclear if depth < DEEPEST => {
-                let stuck = sum.error > 0.9 * candidate.error && sum.error > 64.0 * sum.rounding;
-                candidate.stuck = if stuck { candidate.stuck + 1 } else { 0 };
-                candidate.error = sum.error;
-                // A jump of the field: no contour is there, only a change of sign.
-                candidate.stuck >= STUCK
+                let is_poor = sum.spread() <= POOR * sum.error;
+                if is_poor && sum.error > 0.25 * candidate.error {
+                    candidate.stuck += 1;
+                } else {
+                    candidate.stuck = 0;
+                    candidate.error = sum.error;
+                }
+                // A jump, or nothing but rounding: no contour is there, only changes of sign.
+                candidate.stuck > STUCK
             }
             Outcome::Unclear => {
-                tracer.smallest(rect, &sum.corners, &mut self.arcs);
+                tracer.smallest(Cell { rect, sum: &sum }, &mut self.arcs);
                 true
             }
         }
@@ -150,10 +149,6 @@ impl Divider<'_> {
 fn outcome(sum: &Sum, valid: Option<&Sum>) -> Outcome {
     let [low, high] = sum.range();
     if low > 0.0 || high < 0.0 {
-        return Outcome::Empty;
-    }
-    // Nothing but rounding: the field is constant here, and its value is not the one wanted, which has been moved.
-    if high - low <= 64.0 * sum.rounding {
         return Outcome::Empty;
     }
     if valid.is_some_and(|valid| valid.range()[1] < 0.0) {

@@ -15,6 +15,7 @@
 mod arc;
 mod divide;
 mod join;
+mod levels;
 mod model;
 mod piece;
 

@@ -54,8 +54,6 @@ pub(super) struct Model {
     bernstein: [Coefficients; 4],
     /// How far the stand-ins may be from the functions.
     error: Functions,
-    /// Largest value of each function.
-    size: Functions,
     /// The functions at the corners (0,0), (1,0), (0,1), (1,1).
     corners: [Functions; 4],
 }
@@ -100,22 +98,21 @@ impl Model {
         }
         // Rounding is no news.
         let error = std::array::from_fn(|c| SAFETY * error[c] + 8.0 * f64::EPSILON * size[c]);
-        Ok(Model { bernstein, error, size, corners })
+        Ok(Model { bernstein, error, corners })
     }
 
     /// A weighted sum of the functions.
     pub fn sum(&self, weights: &Functions) -> Sum {
         let mut coefficients = [0.0; N * N];
-        let (mut error, mut rounding) = (0.0, 0.0);
+        let mut error = 0.0;
         for (c, &weight) in weights.iter().enumerate().filter(|(_, weight)| **weight != 0.0) {
             for (sum, x) in coefficients.iter_mut().zip(&self.bernstein[c]) {
                 *sum += weight * x;
             }
             error += weight.abs() * self.error[c];
-            rounding += weight.abs() * self.size[c] * f64::EPSILON;
         }
         let corners = self.corners.each_ref().map(|functions| crate::field::weighted(weights, functions));
-        Sum { coefficients, error, rounding, corners }
+        Sum { coefficients, error, corners }
     }
 }
 
@@ -125,8 +122,6 @@ pub(super) struct Sum {
     coefficients: Coefficients,
     /// How far the polynomial may be from the sum.
     pub error: f64,
-    /// What rounding makes of its largest terms.
-    pub rounding: f64,
     /// The sum itself at (0,0), (1,0), (0,1), (1,1).
     pub corners: [f64; 4],
 }
@@ -135,6 +130,11 @@ impl Sum {
     /// Least and largest value that the sum may have: polynomials lie in the hull of their Bernstein coefficients.
     pub fn range(&self) -> [f64; 2] {
         range(self.coefficients.iter().copied(), self.error)
+    }
+    /// Largest difference of the polynomial's values, about.
+    pub fn spread(&self) -> f64 {
+        let [low, high] = range(self.coefficients.iter().copied(), 0.0);
+        high - low
     }
 
     /// Whether it grows or shrinks everywhere along an axis.
@@ -162,6 +162,65 @@ impl Sum {
         let [low, high] = range(differences, STEEPER * self.error);
         low > 0.0 || high < 0.0
     }
+}
+
+impl Sum {
+    /// The polynomial along `axis`, at a place 0 to 1 of the other: Bernstein coefficients.
+    pub fn line(&self, axis: usize, place: f64) -> Line {
+        let weights = basis(place);
+        Line(std::array::from_fn(|k| {
+            let of = |j: usize| self.coefficients[if axis == 0 { j * N + k } else { k * N + j }];
+            (0..N).map(|j| weights[j] * of(j)).sum()
+        }))
+    }
+}
+
+/// A polynomial of degree 4 on 0 to 1.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Line([f64; N]);
+
+impl Line {
+    fn value(&self, x: f64) -> f64 {
+        basis(x).iter().zip(&self.0).map(|(b, c)| b * c).sum()
+    }
+
+    /// A zero between ends of different sign, or the end that is nearer to 0.
+    pub fn zero(&self) -> f64 {
+        let [first, last] = [self.0[0], self.0[N - 1]];
+        if (first > 0.0) == (last > 0.0) {
+            return if first.abs() < last.abs() { 0.0 } else { 1.0 };
+        }
+        let [mut low, mut high] = [0.0, 1.0];
+        let mut x = first / (first - last);
+        for _ in 0..12 {
+            let value = self.value(x);
+            if (value > 0.0) == (first > 0.0) {
+                low = x
+            } else {
+                high = x
+            }
+            let next = x - value / self.slope(x);
+            let step = next - x;
+            x = if next > low && next < high { next } else { 0.5 * (low + high) };
+            if step.abs() < 1e-9 {
+                break;
+            }
+        }
+        x
+    }
+
+    /// Its derivative.
+    pub fn slope(&self, x: f64) -> f64 {
+        let y = 1.0 - x;
+        let weights = [y * y * y, 3.0 * y * y * x, 3.0 * y * x * x, x * x * x];
+        (0..N - 1).map(|k| 4.0 * weights[k] * (self.0[k + 1] - self.0[k])).sum()
+    }
+}
+
+fn basis(x: f64) -> [f64; N] {
+    let y = 1.0 - x;
+    let (x2, y2) = (x * x, y * y);
+    [y2 * y2, 4.0 * y2 * y * x, 6.0 * y2 * x2, 4.0 * y * x2 * x, x2 * x2]
 }
 
 fn range(values: impl Iterator<Item = f64>, margin: f64) -> [f64; 2] {
@@ -239,10 +298,7 @@ fn to_bernstein(values: &Coefficients) -> Coefficients {
 }
 
 fn evaluate(bernstein: &Coefficients, at: [f64; 2]) -> f64 {
-    let [u, v] = at.map(|x| {
-        let y = 1.0 - x;
-        [y.powi(4), 4.0 * y.powi(3) * x, 6.0 * (x * y).powi(2), 4.0 * y * x.powi(3), x.powi(4)]
-    });
+    let [u, v] = at.map(basis);
     (0..N * N).map(|k| u[k % N] * v[k / N] * bernstein[k]).sum()
 }
 

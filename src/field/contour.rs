@@ -37,6 +37,9 @@ impl Contour {
 /// nearer, their values would have lost more than five of sixteen digits.
 const POLE: f64 = 1e-5;
 
+/// Sine of an isophote's angle below which the cosine does not tell it from 0 or 180 degrees.
+const SMALLEST_ISOPHOTE: f64 = 1e-7;
+
 /// A weighted sum.
 pub(crate) fn weighted(weights: &Functions, functions: &Functions) -> f64 {
     (weights[0] * functions[0] + weights[1] * functions[1]) + (weights[2] * functions[2] + weights[3] * functions[3])
@@ -109,10 +112,12 @@ impl Field {
                 let (sin, cos) = value.to_radians().sin_cos();
                 Contour::where_valid([-sin, cos, 0.0, 0.0], [cos, sin, -POLE, 0.0])
             }
-            Method::Isophote if (0.0..=180.0).contains(&value) => {
-                Contour::whole([1.0, -value.to_radians().cos(), 0.0, 0.0])
+            // 0 and 180 degrees are where the angle is least and largest: points, or regions.
+            Method::Isophote => {
+                let (sin, cos) = value.to_radians().sin_cos();
+                ((0.0..=180.0).contains(&value) && sin > SMALLEST_ISOPHOTE)
+                    .then_some(Contour { zero: [1.0, -cos, 0.0, 0.0], valid: None })
             }
-            Method::Isophote => None,
         }
     }
 
