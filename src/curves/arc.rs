@@ -55,15 +55,16 @@ struct Node {
 const SHARE: f64 = 0.7;
 /// Most halvings of an arc.
 const HALVINGS: u32 = 16;
-/// Halvings of an arc, at most, that look for a place where it ceases to be valid; and the part of the largest V below which the
-/// smallest one may be on its way to 0.
+/// Halvings of an arc, at most, that look for a place where it ceases to be valid; and how far V may be from linear, over its least
+/// value, where there is none.
 const HALVINGS_CUT: u32 = 4;
-const SAFE: f64 = 0.3;
+const SAFE: f64 = 0.5;
 
-/// A cell, and F on it.
+/// A cell, and F and V on it.
 pub(super) struct Cell<'a> {
     pub rect: Rect,
     pub sum: &'a Sum,
+    pub valid: Option<&'a Sum>,
 }
 
 /// Draws arcs of one contour on one piece.
@@ -90,6 +91,9 @@ impl Tracer<'_> {
 
     /// The arc through a cell on which F is monotone along `axis`, so that there is one value of that parameter for each of the other.
     pub fn simple(&self, cell: Cell, axis: usize, out: &mut Vec<Arc>) {
+        if self.is_invalid(&cell, axis) {
+            return;
+        }
         let crossings = self.crossings(&cell);
         // Two by the signs at the corners; rounding may leave a corner without any.
         let [from, to] = crossings[..] else { return };
@@ -127,7 +131,7 @@ impl Tracer<'_> {
     }
 
     /// Where the contour crosses the sides of a cell, at most once each: left, right, low, high.
-    fn crossings(&self, Cell { rect, sum }: &Cell) -> Vec<(Side, [f64; 2])> {
+    fn crossings(&self, Cell { rect, sum, .. }: &Cell) -> Vec<(Side, [f64; 2])> {
         let sides = [(0, false, [0, 2]), (0, true, [1, 3]), (1, false, [0, 1]), (1, true, [2, 3])];
         let crossing = |(axis, end, [first, last]): (usize, bool, [usize; 2])| {
             let signs = [sum.corners[first], sum.corners[last]];
@@ -153,7 +157,7 @@ impl Tracer<'_> {
     }
 
     /// The node of a cell at one value of the parameter that is not monotone.
-    fn across(&self, Cell { rect, sum }: &Cell, axis: usize, along: f64) -> Option<Node> {
+    fn across(&self, Cell { rect, sum, .. }: &Cell, axis: usize, along: f64) -> Option<Node> {
         let place = |x: f64| if axis == 0 { [x, along] } else { [along, x] };
         let [low, high] = [rect.low[1 - axis], rect.high[1 - axis]];
         let line = sum.line(axis, (along - low) / (high - low));
@@ -161,28 +165,46 @@ impl Tracer<'_> {
         Some(self.node(place(zero(|x| self.value(place(x)), range, line.slope(0.5) < 0.0, &line)?)))
     }
 
-    /// Adds nodes between two until chords are within the tolerance, and V does not come near 0 between them unseen.
+    /// What the models say of the arc at a part of the cell, 0 to 1, along the parameter that is not monotone: position and V.
+    fn guess(&self, Cell { rect, sum, valid }: &Cell, axis: usize, part: f64) -> (DVec3, f64) {
+        let zero = sum.line(axis, part).zero();
+        let at = if axis == 0 { [zero, part] } else { [part, zero] };
+        (self.piece.position(rect.at(at)), valid.map_or(1.0, |valid| valid.value(at)))
+    }
+
+    /// Whether nothing of the arc is the contour, as clearly as the model can say.
+    fn is_invalid(&self, cell: &Cell, axis: usize) -> bool {
+        const PROBES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
+        let Some(valid) = cell.valid else { return false };
+        let values = PROBES.map(|part| self.guess(cell, axis, part).1);
+        let [low, high] = values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], &v| [l.min(v), h.max(v)]);
+        high + (high - low) + valid.error < 0.0
+    }
+
+    /// Adds nodes between two until chords are within the tolerance, and V does not pass 0 twice between them unseen.
     fn fill(&self, cell: &Cell, axis: usize, [from, to]: [Node; 2], halvings: u32, out: &mut Vec<Node>) {
-        let [a, b] = [from, to].map(|node| node.at[1 - axis]);
-        let is_safe = |nodes: &[Node]| {
-            let signed = |sign: f64| {
-                let valid = nodes.iter().map(|node| sign * node.valid);
-                valid.clone().fold(f64::INFINITY, f64::min) > SAFE * valid.fold(0.0, f64::max)
-            };
-            halvings >= HALVINGS_CUT || signed(1.0) || signed(-1.0)
-        };
-        let is_short = from.position.distance(to.position) <= self.tolerance;
-        // What is not the contour needs no points.
-        let is_idle = is_short || (from.valid < 0.0 && to.valid < 0.0);
-        if halvings == HALVINGS || (is_idle && is_safe(&[from, to])) {
+        let is_cut = (from.valid > 0.0) != (to.valid > 0.0);
+        if halvings == HALVINGS || (!is_cut && from.position.distance(to.position) <= self.tolerance) {
             return;
         }
-        let at = |part: f64| self.across(cell, axis, a + part * (b - a));
-        let far = |node: &Node| distance(node.position, from.position, to.position) > SHARE * self.tolerance;
-        let Some(middle) = at(0.5) else { return };
-        // Bends to both sides may meet the chord in the middle.
-        let bent = || far(&middle) || at(0.25).is_some_and(|node| far(&node));
-        if !is_safe(&[from, middle, to]) || bent() {
+        let [a, b] = [from, to].map(|node| node.at[1 - axis]);
+        let [low, high] = [cell.rect.low, cell.rect.high].map(|corner| corner[1 - axis]);
+        // Where points are needed is read off the model; the points are not.
+        let guess = |part: f64| self.guess(cell, axis, (a + part * (b - a) - low) / (high - low));
+        let far = |p: DVec3| distance(p, from.position, to.position) > SHARE * self.tolerance;
+        let middle = guess(0.5);
+        // As far as V is linear, it is known between the three.
+        let bend = (middle.1 - 0.5 * (from.valid + to.valid)).abs();
+        let least = from.valid.abs().min(to.valid.abs()).min(middle.1.abs());
+        let is_known = is_cut || bend <= SAFE * least || halvings >= HALVINGS_CUT;
+        // What is not the contour needs no points. Bends to both sides may meet the chord in the middle.
+        let is_contour = from.valid > 0.0 || to.valid > 0.0;
+        if !is_known || (is_contour && (far(middle.0) || far(guess(0.25).0))) {
+            let at = |part: f64| self.across(cell, axis, a + part * (b - a));
+            let Some(middle) = at(0.5) else { return };
+            if is_known && !far(middle.position) && !at(0.25).is_some_and(|node| far(node.position)) {
+                return;
+            }
             self.fill(cell, axis, [from, middle], halvings + 1, out);
             out.push(middle);
             self.fill(cell, axis, [middle, to], halvings + 1, out);
@@ -247,6 +269,9 @@ pub(super) fn distance(p: DVec3, a: DVec3, b: DVec3) -> f64 {
     (ap - ab * if t.is_finite() { t.clamp(0.0, 1.0) } else { 0.0 }).length()
 }
 
+/// Part of a range within which secants gain digits with every step.
+const NEAR: f64 = 1e-6;
+
 /// A zero of a function that is monotone on a range, to the last digits; `positive`: at the range's start it is above 0. From the zero of
 /// the polynomial that stands in for it by secants, which a tenth step or a third value finds; where they fail, by halves. `None`
 /// where the function is undefined on the way.
@@ -278,12 +303,12 @@ fn zero(f: impl Fn(f64) -> Option<f64>, [mut low, mut high]: [f64; 2], positive:
         }
         let last = std::mem::replace(&mut x, next);
         let new = f(x)?;
+        // So near, a step that gains nothing has met rounding.
+        if is_last || (new.abs() > 0.25 * value.abs() && step.abs() < NEAR * width) {
+            return Some(if new.abs() < value.abs() { x } else { last });
+        }
         let secant = -new * (x - last) / (new - value);
         value = new;
-        if is_last {
-            return Some(x);
-        }
-        // Along rounding: secants say nothing any more.
         step = if secant.is_finite() { secant } else { 0.5 * (high - low) };
     }
     Some(x)

@@ -121,10 +121,11 @@ impl Divider<'_> {
         let sum = model.sum(&contour.zero);
         let valid = contour.valid.map(|weights| model.sum(&weights));
         let tracer = Tracer { scene: &self.scene, piece, contour, wanted: candidate.wanted, tolerance: self.tolerance };
+        let cell = Cell { rect, sum: &sum, valid: valid.as_ref() };
         match outcome(&sum, valid.as_ref()) {
             Outcome::Empty => true,
             Outcome::Simple(axis) => {
-                tracer.simple(Cell { rect, sum: &sum }, axis, &mut self.arcs);
+                tracer.simple(cell, axis, &mut self.arcs);
                 true
             }
             Outcome::Unclear if depth < DEEPEST => {
@@ -139,7 +140,7 @@ impl Divider<'_> {
                 candidate.stuck > STUCK
             }
             Outcome::Unclear => {
-                tracer.smallest(Cell { rect, sum: &sum }, &mut self.arcs);
+                tracer.smallest(cell, &mut self.arcs);
                 true
             }
         }

@@ -175,6 +175,13 @@ impl Sum {
     }
 }
 
+impl Sum {
+    /// The polynomial's value.
+    pub fn value(&self, at: [f64; 2]) -> f64 {
+        evaluate(&self.coefficients, at)
+    }
+}
+
 /// A polynomial of degree 4 on 0 to 1.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Line([f64; N]);

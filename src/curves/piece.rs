@@ -4,6 +4,11 @@ use crate::field::{Camera, Field, Functions, Point};
 use crate::stam::{Curvature, Jet, Jet2, LimitSurface, Net, Window};
 use glam::DVec3;
 
+/// Part of the square of a derivative below which that of the other vanishes.
+const VANISHING: f64 = 1e-20;
+/// Sine of the angle between derivatives below which the normal has lost six of sixteen digits.
+const FOLDED: f64 = 1e-6;
+
 /// What is looked at: the functions of a field on a surface, as a camera sees it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Scene<'a> {
@@ -96,11 +101,14 @@ impl Piece {
         }
         let sum = |weights: &[f64; 4], k: usize| (0..4).map(|j| weights[j] * rows[j][k]).sum::<DVec3>();
         let (du, dv) = (sum(&e, 1), sum(&f, 0));
-        // Where derivatives vanish or are parallel, the reference knows the limit of the normals.
-        let across = du.cross(dv).length_squared();
-        let clear = across > 1e-16 * (du.length_squared() * dv.length_squared()) && across > f64::MIN_POSITIVE;
-        if !clear {
+        // Where derivatives vanish, the reference knows the limit of the normals; where they are parallel the patch is folded, and the
+        // normal is rounding.
+        let [long, wide] = [du, dv].map(DVec3::length_squared);
+        if long.min(wide) <= VANISHING * long.max(wide) {
             return scene.functions(self.patch, self.to_patch(at));
+        }
+        if du.cross(dv).length_squared() <= FOLDED * FOLDED * long * wide {
+            return None;
         }
         // By the parameters of the piece and in its own scale: neither turns the normal.
         let jet = Jet { normal: du.cross(dv).normalize(), ..Jet::new(self.origin + self.scale * sum(&e, 0), du, dv) };

@@ -33,9 +33,9 @@ impl Contour {
     }
 }
 
-/// Sine of the angle to a place where a field is undefined (light at the horizon, a pole of the sphere) at which its contours end:
-/// nearer, their values would have lost more than five of sixteen digits.
-const POLE: f64 = 1e-5;
+/// Sine of the angle to a place where a field is undefined (light at the horizon, a pole of the sphere) at which its contours end.
+/// Values turn with one over its square there: nearer, the last digit of (u,v) would move them by more than 1e-10.
+const POLE: f64 = 1e-4;
 
 /// Sine of an isophote's angle below which the cosine does not tell it from 0 or 180 degrees.
 const SMALLEST_ISOPHOTE: f64 = 1e-7;
@@ -64,7 +64,7 @@ impl Field {
             Method::RayDistance => distances(light, position, ray(normal, sight)?),
             Method::Highlight(HighlightKind::Array) => {
                 let [x, _, w, _] = mirrored(light, position, normal)?;
-                [x, w, 0.0, 0.0]
+                [x, w, 0.0, w * w - POLE * POLE]
             }
             Method::Highlight(HighlightKind::Nearest) => distances(light, position, normal),
             Method::Highlight(kind) => {
@@ -93,7 +93,9 @@ impl Field {
         }
         let spacing = self.light.spacing;
         match &self.method {
-            Method::Reflection => Contour::where_valid([1.0, -value, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]),
+            Method::Reflection | Method::Highlight(HighlightKind::Array) => {
+                Contour::where_valid([1.0, -value, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0])
+            }
             Method::Curve(PlaneCurve::Circle | PlaneCurve::Ellipse { .. }) if value > 0.0 => {
                 Contour::where_valid([1.0, -value * value, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0])
             }
@@ -102,7 +104,6 @@ impl Field {
             Method::RayDistance | Method::Highlight(HighlightKind::Nearest) => {
                 Contour::where_valid([1.0, f64::from(light) * spacing, -value, 0.0], [0.0, 0.0, -value.abs(), spacing])
             }
-            Method::Highlight(HighlightKind::Array) => Contour::whole([1.0, -value, 0.0, 0.0]),
             Method::Highlight(HighlightKind::Signed) => {
                 Contour::where_valid([1.0, -value, 0.0, 0.0], [0.0, 1.0, -POLE, 0.0])
             }
