@@ -17,7 +17,11 @@ mod divide;
 mod join;
 mod levels;
 mod model;
+mod occluder;
 mod piece;
+mod visible;
+
+pub use visible::visible;
 
 use crate::field::{Camera, Contour, Field};
 use crate::stam::LimitSurface;

@@ -77,6 +77,16 @@ impl Piece {
         [self.corner[0] + self.size * s, self.corner[1] + self.size * t]
     }
 
+    /// Bezier points, u fastest.
+    pub fn bezier(&self) -> [DVec3; 16] {
+        let of_line = |[a, b, c, d]: [DVec3; 4]| {
+            [(a + 4.0 * b + c) / 6.0, (2.0 * b + c) / 3.0, (b + 2.0 * c) / 3.0, (b + 4.0 * c + d) / 6.0]
+        };
+        let rows: [[DVec3; 4]; 4] = std::array::from_fn(|j| of_line(std::array::from_fn(|i| self.net[4 * j + i])));
+        let columns: [[DVec3; 4]; 4] = std::array::from_fn(|i| of_line(std::array::from_fn(|j| rows[j][i])));
+        std::array::from_fn(|k| self.origin + self.scale * columns[k % 4][k / 4])
+    }
+
     /// Position at parameters of the piece, each 0 to 1.
     pub fn position(&self, [s, t]: [f64; 2]) -> DVec3 {
         let (bs, bt) = (basis(s)[0], basis(t)[0]);
