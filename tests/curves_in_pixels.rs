@@ -40,6 +40,8 @@ const WIDTH: f64 = 0.42;
 struct Sample {
     at: DVec2,
     position: DVec3,
+    /// Ptex faces of the curve's points before and after it.
+    faces: [u32; 2],
     /// Index of its value.
     value: usize,
     /// Whether the next sample goes on with the curve.
@@ -87,6 +89,10 @@ impl Scene<'_> {
         self.image.field[i].map(|value| value.x)
     }
 
+    fn face(&self, i: usize) -> u32 {
+        self.surface.patches()[self.image.patch[i] as usize].ptex
+    }
+
     fn normal(&self, i: usize) -> DVec3 {
         DVec3::from_array(self.image.normal[i].map(f64::from))
     }
@@ -128,6 +134,8 @@ impl Scene<'_> {
         let size = self.image.position[a].distance(self.image.position[d]);
         [(a, b), (c, d), (a, c), (b, d)].into_iter().all(|(i, j)| self.is_smooth(i, j))
             && seen.distance(sample.position) <= size
+            // Layers may be nearer to each other than samples.
+            && pixels.iter().any(|&i| sample.faces.contains(&self.face(i)))
             && self.is_wide(&pixels.map(|i| self.value(i).unwrap_or(f64::NAN)))
     }
 
@@ -197,13 +205,14 @@ fn samples(curves: &[curves::Curve], values: &[f64], camera: &Camera) -> Vec<Sam
         let count = curve.points.len();
         for i in 0..if curve.closed { count } else { count - 1 } {
             let [a, b] = [curve.points[i], curve.points[(i + 1) % count]];
+            let faces = [i, (i + 1) % count].map(|i| curve.places[i].face);
             let project = |p: DVec3| camera.project(p).map(DVec2::from_array);
             let (Some(p), Some(q)) = (project(a), project(b)) else { continue };
             let steps = (p.distance(q) / STEP).ceil().max(1.0) as u32;
             for k in 0..=steps {
                 let position = a.lerp(b, f64::from(k) / f64::from(steps));
                 let at = project(position).expect("between two that are seen");
-                samples.push(Sample { at, position, value, goes_on: k < steps });
+                samples.push(Sample { at, position, faces, value, goes_on: k < steps });
             }
         }
     }
