@@ -1,7 +1,7 @@
 //! Divides pieces until the contours on each cell have a shape that its corners tell.
 
 use super::arc::{Arc, Cell, Tracer};
-use super::levels::Approach;
+use super::levels::{Ahead, Approach};
 use super::model::{Model, Rect, Sum, Undefined};
 use super::piece::{Piece, Scene};
 use crate::field::Contour;
@@ -34,6 +34,10 @@ const STUCK: u8 = 4;
 const POOR: f64 = 64.0;
 /// Levels of an extraordinary vertex: the last ones are left for rounding.
 const DEEPEST_LEVEL: usize = LEVELS - 8;
+/// Levels beyond one that are looked at before contours are ruled out further in, and where.
+const AHEAD: usize = 2;
+const LOOKS: [[f64; 2]; 5] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0], [0.5, 0.5]];
+
 /// What a cell is to a contour.
 enum Outcome {
     Empty,
@@ -54,7 +58,7 @@ pub(super) struct Divider<'a> {
 pub(super) fn divide(scene: Scene, patch: usize, wanted: &[Wanted], tolerance: f64) -> Vec<Arc> {
     let mut divider = Divider { scene, wanted, tolerance, arcs: Vec::new() };
     let all = (0..wanted.len()).map(|wanted| Candidate { wanted, error: f64::INFINITY, stuck: 0 }).collect();
-    let net = scene.surface.net(patch, 2);
+    let net = scene.surface.net(patch, 1 + AHEAD);
     match Piece::regular(patch, &net) {
         Some(piece) => {
             let model = Model::new(&scene, &piece, &Rect::WHOLE);
@@ -71,11 +75,11 @@ impl Divider<'_> {
         let Scene { surface, field, .. } = self.scene;
         let is_smooth = surface.class(patch).is_some_and(|class| surface.classes()[class].has_tangent_plane());
         let vertex = (is_smooth && !field.method.reads_curvature()).then(|| self.scene.functions(patch, [0.0; 2]));
-        let vertex = vertex.flatten();
+        let mut ahead = Ahead { vertex: vertex.flatten(), ..Ahead::default() };
         let mut approaches = vec![Approach::NONE; self.wanted.len()];
         for level in 1..=DEEPEST_LEVEL {
-            if matches!(&net, Net::Irregular { levels, .. } if levels.len() < level) {
-                net = surface.net(patch, if level < 8 { 8 } else { DEEPEST_LEVEL });
+            if matches!(&net, Net::Irregular { levels, .. } if levels.len() < level + AHEAD) {
+                net = surface.net(patch, if level < 8 { 8 + AHEAD } else { DEEPEST_LEVEL + AHEAD });
             }
             let pieces = Piece::level(patch, &net, level);
             let models: Vec<_> = pieces.iter().map(|piece| Model::new(&self.scene, piece, &Rect::WHOLE)).collect();
@@ -83,9 +87,12 @@ impl Divider<'_> {
                 self.cell(piece, Rect::WHOLE, model.as_ref().map_err(|undefined| *undefined), candidates.clone(), 0);
             }
             let models: Vec<_> = models.into_iter().map(Result::ok).collect();
+            let further = (level + 1..=level + AHEAD).flat_map(|level| Piece::level(patch, &net, level));
+            let looks = further.flat_map(|piece| LOOKS.map(|at| piece.functions(&self.scene, at)));
+            ahead.further = looks.flatten().collect();
             candidates.retain(|candidate| {
                 let weights = &self.wanted[candidate.wanted].contour.zero;
-                approaches[candidate.wanted].may_arrive(level, &models, weights, vertex.as_ref())
+                approaches[candidate.wanted].may_arrive(level, &models, weights, &ahead)
             });
             if candidates.is_empty() {
                 break;

@@ -10,6 +10,15 @@ const TREND: usize = 4;
 /// What a trend may be better than it looks.
 const TRUST: f64 = 2.0;
 
+/// What is known of the square that a level leaves.
+#[derive(Debug, Default)]
+pub(super) struct Ahead {
+    /// The limit at the vertex, if there is one.
+    pub vertex: Option<Functions>,
+    /// Values on the next levels: modes of different signs may go one way first and then the other.
+    pub further: Vec<Functions>,
+}
+
 /// How near the values of the levels came to 0.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Approach {
@@ -21,14 +30,15 @@ pub(super) struct Approach {
 impl Approach {
     pub const NONE: Approach = Approach { distance: f64::INFINITY, step: f64::INFINITY };
 
-    /// Takes in the next level. Where the field has a limit at the vertex, its values further in are between that and the level, about;
-    /// where it has none (curvatures, normals without a tangent plane), they go on as they did, in a geometric series.
+    /// Takes in the next level. Where the field has a limit at the vertex, its values further in are between that, the level and what is
+    /// seen ahead, about; where it has none (curvatures, normals without a tangent plane), they go on as they did, in a geometric
+    /// series.
     pub fn may_arrive(
         &mut self,
         level: usize,
         models: &[Option<Model>],
         weights: &Functions,
-        vertex: Option<&Functions>,
+        Ahead { vertex, further }: &Ahead,
     ) -> bool {
         let mut range = [f64::INFINITY, f64::NEG_INFINITY];
         for model in models {
@@ -37,8 +47,8 @@ impl Approach {
             let [low, high] = model.sum(weights).range();
             range = [range[0].min(low), range[1].max(high)];
         }
-        if let Some(vertex) = vertex {
-            let value = weighted(weights, vertex);
+        for functions in vertex.iter().chain(further) {
+            let value = weighted(weights, functions);
             range = [range[0].min(value), range[1].max(value)];
         }
         let excess = EXCESS * (range[1] - range[0]);
