@@ -10,6 +10,7 @@
 //! * [`statistics`]: what errors are summed up in;
 //! * [`field`]: cameras, lights and what a surface mirrors;
 //! * [`curves`]: contours of a field as exact curves on the surface;
+//! * [`quality`]: how its patches meet, and what that does to a field's lines;
 //! * [`physical`]: the points that mirror a light point into an eye;
 //! * [`gpu`]: the same limit for every pixel, in a fragment pipeline;
 //! * [`compare`]: how far a picture of other patches is from the exact one;
@@ -40,6 +41,7 @@ pub mod output;
 pub mod page;
 pub mod patch;
 pub mod physical;
+pub mod quality;
 pub mod stam;
 pub mod statistics;
 pub mod verify;

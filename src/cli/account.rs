@@ -106,6 +106,11 @@ impl Account {
     /// The time of each step, on standard error.
     pub fn say_timings(&self, adapter: &str) {
         eprintln!("{:<20} {adapter}", "adapter");
+        self.say_steps();
+    }
+
+    /// The same where no adapter took part.
+    pub fn say_steps(&self) {
         for (name, time) in &self.steps {
             eprintln!("{name:<20} {:>8.1} ms", time.as_secs_f64() * 1e3);
         }

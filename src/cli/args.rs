@@ -21,6 +21,8 @@ pub(super) struct Cli {
 pub(super) enum Command {
     /// Draw the reflection lines of the limit surface
     Render(Box<super::render::RenderArgs>),
+    /// Trace the lines as curves on the limit surface
+    Lines(Box<super::lines::LinesArgs>),
     /// Evaluate the limit surface at given samples
     Eval(EvalArgs),
     /// Compare the limit surface, on CPU and GPU, with OpenSubdiv

@@ -8,6 +8,7 @@ mod field;
 mod frames;
 mod glints;
 mod info;
+mod lines;
 mod patches;
 mod render;
 mod rig;
@@ -93,6 +94,7 @@ pub fn run() -> ExitCode {
     discard_unfinished_when_stopped();
     let result = match cli.command {
         Command::Render(args) => render::run(&args),
+        Command::Lines(args) => lines::run(&args),
         Command::Eval(args) => eval::run(&args),
         Command::Verify(args) => verify::run(&args),
         Command::Glints(args) => glints::run(&args),

@@ -51,7 +51,7 @@ enum ProjectionName {
     Orthographic,
 }
 
-fn positive(text: &str) -> Result<f64, String> {
+pub(super) fn positive(text: &str) -> Result<f64, String> {
     text.parse().ok().filter(|x: &f64| *x > 0.0 && x.is_finite()).ok_or("give a number above 0".to_owned())
 }
 
@@ -78,6 +78,16 @@ impl RigArgs {
             }
             _ => Ok(()),
         }
+    }
+
+    /// Whether lines of sight are parallel.
+    pub(super) fn is_orthographic(&self) -> bool {
+        self.projection == ProjectionName::Orthographic
+    }
+
+    /// Normal and line direction that say which light this is: those given, and its own.
+    pub(super) fn directions(&self, light: &Light) -> [DVec3; 2] {
+        [self.light_normal.unwrap_or(light.normal()), self.light_lines.unwrap_or(light.axes[1])]
     }
 
     /// Camera and field, fitted to a surface where flags do not say; `is_sample`: to the built-in one.

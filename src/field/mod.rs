@@ -7,6 +7,7 @@
 
 mod camera;
 pub mod colours;
+mod contour;
 mod curvature;
 mod curve;
 mod distance;
@@ -20,6 +21,8 @@ mod rig;
 mod sphere;
 
 pub use camera::{Axes, Camera, DEFAULT_FOV, Projection, Ray};
+pub(crate) use contour::weighted;
+pub use contour::{Contour, Functions};
 pub use curvature::CurvatureKind;
 pub use curve::{Expression, ExpressionError, PlaneCurve};
 pub use highlight::HighlightKind;

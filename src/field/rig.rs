@@ -133,18 +133,24 @@ impl Scout {
         if low < high { [low, high] } else { [low - 0.5, low + 0.5] }
     }
 
+    /// The first coordinate of a field at a point.
+    fn value(&self, field: &Field, camera: &Camera, i: usize) -> Option<f64> {
+        let position = self.points[i];
+        let point =
+            Point { position, normal: self.normals[i], sight: camera.sight(position), curvature: self.curvatures[i] };
+        field.value(&point).map(|value| value.x)
+    }
+
+    /// Least and greatest value of a field's first coordinate at the points looked at, visible or not; `None` where it
+    /// has no values.
+    pub fn extremes(&self, field: &Field, camera: &Camera) -> Option<[f64; 2]> {
+        let values = (0..self.points.len()).filter_map(|i| self.value(field, camera, i));
+        values.map(|x| [x, x]).reduce(|[low, high], [x, _]| [low.min(x), high.max(x)])
+    }
+
     /// Quantiles of a field's first coordinate over the visible surface; zeros where it has no values.
-    fn quantiles(&self, field: &Field, camera: &Camera, parts: [f64; 2]) -> [f64; 2] {
-        let value = |&(i, w): &(usize, f64)| {
-            let position = self.points[i];
-            let point = Point {
-                position,
-                normal: self.normals[i],
-                sight: camera.sight(position),
-                curvature: self.curvatures[i],
-            };
-            Some((field.value(&point)?.x, w))
-        };
+    pub fn quantiles<const N: usize>(&self, field: &Field, camera: &Camera, parts: [f64; N]) -> [f64; N] {
+        let value = |&(i, w): &(usize, f64)| Some((self.value(field, camera, i)?, w));
         let mut values: Vec<(f64, f64)> = self.visible(camera).iter().filter_map(value).collect();
         values.sort_by(|a, b| a.0.total_cmp(&b.0));
         let total: f64 = values.iter().map(|(_, w)| w).sum();

@@ -1,0 +1,238 @@
+//! `lines`: the curves.
+
+mod extent;
+mod family;
+
+use super::account::Account;
+use super::args::size;
+use super::field::FieldArgs;
+use super::rig::{RigArgs, positive};
+use super::settings::{CommandLine, mesh_digest};
+use super::{Failure, load, progress, write_out};
+use crate::curves::{self, Curve};
+use crate::field::{Camera, Light, Projection, Scout};
+use crate::output::{Lines, LinesFormat, MM_PER_PIXEL, check_writable, write_whole};
+use crate::stam::LimitSurface;
+use clap::{Args, ValueEnum};
+use family::FamilyArgs;
+use std::path::{Path, PathBuf};
+
+/// Chord error where none is asked for, in diagonals of the surface's box.
+const TOLERANCE: f64 = 1e-4;
+/// Least chord error, in diagonals: below, positions are rounding.
+const LEAST_TOLERANCE: f64 = 1e-12;
+
+#[derive(Debug, Args)]
+pub(super) struct LinesArgs {
+    /// Control mesh (.obj)
+    mesh: Option<PathBuf>,
+    /// File to write: .svg (the picture), .dxf, .obj, .usda or .json (in space) [default: JSON on standard output]
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Width and height of the picture in pixels
+    #[arg(long, value_name = "WxH", default_value = "1024x1024", value_parser = size)]
+    size: [u32; 2],
+    #[command(flatten)]
+    field: FieldArgs,
+    #[command(flatten)]
+    family: FamilyArgs,
+    /// How far chords may be from the curve, world units [default: 1e-4 of the diagonal]
+    #[arg(long, value_name = "T", value_parser = positive, allow_negative_numbers = true)]
+    tolerance: Option<f64>,
+    /// Keep what the surface hides in an .svg too
+    #[arg(long, conflicts_with = "visible")]
+    hidden: bool,
+    /// Keep only what the camera sees in files of curves in space too
+    #[arg(long)]
+    visible: bool,
+    #[command(flatten)]
+    paper: PaperArgs,
+    #[command(flatten)]
+    rig: RigArgs,
+    /// Print how long each step took
+    #[arg(long)]
+    timings: bool,
+}
+
+#[derive(Debug, Args)]
+struct PaperArgs {
+    /// Unit of an .svg [default: px; mm with --mm-per-unit]
+    #[arg(long, value_enum)]
+    unit: Option<Unit>,
+    /// Millimetres that a world unit takes: on paper in an .svg of an orthographic view, in space in an .usda (where it
+    /// is 1000 otherwise)
+    #[arg(long, value_name = "MM", value_parser = positive, allow_negative_numbers = true)]
+    mm_per_unit: Option<f64>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Unit {
+    /// Pixels
+    Px,
+    /// Millimetres
+    Mm,
+}
+
+/// What is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Extension {
+    Json,
+    Svg,
+    Dxf,
+    Obj,
+    Usda,
+}
+
+impl Extension {
+    fn of(path: &Path) -> Result<Extension, Failure> {
+        let names = [
+            ("json", Extension::Json),
+            ("svg", Extension::Svg),
+            ("dxf", Extension::Dxf),
+            ("obj", Extension::Obj),
+            ("usda", Extension::Usda),
+        ];
+        let is = |name: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(name));
+        names.into_iter().find(|(name, _)| is(name)).map(|(_, extension)| extension).ok_or_else(|| {
+            let what =
+                "not a file of curves that we write; choose a name that ends in .svg, .dxf, .obj, .usda or .json";
+            Failure::Bad(format!("{}: {what}", path.display()))
+        })
+    }
+}
+
+impl PaperArgs {
+    /// Refuses flags that contradict one another or the file.
+    fn check(&self, extension: Extension, orthographic: bool) -> Result<(), Failure> {
+        let bad = |what: &str| Err(Failure::Bad(what.to_owned()));
+        match (extension, self.unit, self.mm_per_unit) {
+            (Extension::Svg, Some(Unit::Px), Some(_)) => {
+                bad("--mm-per-unit makes an .svg in millimetres; leave --unit px out, or --mm-per-unit")
+            }
+            (Extension::Svg, _, Some(_)) if !orthographic => bad(
+                "--mm-per-unit is a scale, which a perspective .svg has not; add --projection orthographic, or give --unit mm",
+            ),
+            (Extension::Json | Extension::Dxf | Extension::Obj, _, Some(_)) => {
+                bad("--mm-per-unit is for .svg and .usda; coordinates of other files are world units")
+            }
+            (Extension::Svg, ..) | (_, None, _) => Ok(()),
+            (_, Some(_), _) => bad("--unit is for .svg; coordinates of other files are world units"),
+        }
+    }
+
+    fn format(&self, extension: Extension, camera: &Camera) -> LinesFormat {
+        match extension {
+            Extension::Json => LinesFormat::Json,
+            Extension::Dxf => LinesFormat::Dxf,
+            Extension::Obj => LinesFormat::Obj,
+            Extension::Usda => LinesFormat::Usda { meters_per_unit: self.mm_per_unit.unwrap_or(1000.0) / 1000.0 },
+            Extension::Svg => LinesFormat::Svg {
+                mm_per_pixel: match (self.mm_per_unit, camera.projection) {
+                    (Some(mm), Projection::Orthographic { height }) => Some(mm * height / f64::from(camera.size[1])),
+                    _ => (self.unit == Some(Unit::Mm)).then_some(MM_PER_PIXEL),
+                },
+            },
+        }
+    }
+}
+
+pub(super) fn run(args: &LinesArgs) -> Result<(), Failure> {
+    let mut account = Account::default();
+    let extension = args.output.as_deref().map_or(Ok(Extension::Json), Extension::of)?;
+    args.rig.check()?;
+    args.paper.check(extension, args.rig.is_orthographic())?;
+    args.family.check(&args.field.method)?;
+    if let Some(path) = &args.output {
+        check_writable(path)?;
+    }
+    let bar = progress("tracing".to_owned());
+    let mesh = account.time("read", || load(args.mesh.as_deref()))?;
+    let surface =
+        account.time("patches and classes", || LimitSurface::new(&mesh)).map_err(|e| Failure::of(&mesh, e))?;
+    let scout = account.time("fit", || Scout::new(&surface)).ok_or_else(|| {
+        let what = "no face has a limit surface (holes, or boundary rule none); no line to trace";
+        Failure::Bad(format!("{}: {what}", mesh.name))
+    })?;
+    let tolerance = args.tolerance.unwrap_or(TOLERANCE * surface.diagonal());
+    let least = LEAST_TOLERANCE * surface.diagonal();
+    if tolerance < least {
+        return Err(Failure::Bad(format!(
+            "--tolerance {tolerance:e} is below rounding here; give {least:.0e} or more"
+        )));
+    }
+    let (camera, mut field) = args.rig.set_up(&scout, args.size, args.mesh.is_none(), &args.field)?;
+    let family = account.time("lights", || args.family.family(&scout, &camera, &mut field));
+    // Made of what is recorded, so that the same light comes of the record, to the last digit.
+    let Light { center, half, spacing, .. } = field.light;
+    let directions = args.rig.directions(&field.light);
+    field.light = Light { half, ..Light::new(center, directions[0], directions[1], spacing) };
+    let mut command = CommandLine::new("lines", args.mesh.as_deref());
+    command.camera(&camera);
+    command.field(&field, directions);
+    family.record(&mut command);
+    args.record(tolerance, &mut command);
+    let made_by = command.finish(mesh_digest(&mesh));
+
+    let mut curves = account.time("trace", || curves::trace(&surface, &field, &camera, &family.values, tolerance));
+    if field.method.is_bounded() && field.light.half[1].is_finite() {
+        curves = account.time("extents", || extent::within(&surface, &field, &camera, curves));
+    }
+    if args.visible || (extension == Extension::Svg && !args.hidden) {
+        curves = account.time("hidden lines", || curves::visible(&surface, &camera, &curves));
+    }
+    let name = args.field.method.to_string();
+    let lines = Lines { curves: &curves, field: &name, camera: &camera, made_by: &made_by };
+    let format = args.paper.format(extension, &camera);
+    account.time("write", || -> Result<(), Failure> {
+        match &args.output {
+            Some(path) => Ok(write_whole(path, |mut out| lines.write(format, &mut out))?),
+            None => {
+                let mut text = Vec::new();
+                lines.write(format, &mut text)?;
+                write_out(None, &text)
+            }
+        }
+    })?;
+    bar.finish_and_clear();
+    family.say();
+    say(&curves, tolerance);
+    if args.timings {
+        account.say_steps();
+    }
+    Ok(())
+}
+
+/// What there is, on standard error.
+fn say(curves: &[Curve], tolerance: f64) {
+    let points: usize = curves.iter().map(|curve| curve.points.len()).sum();
+    let closed = curves.iter().filter(|curve| curve.closed).count();
+    let mut lights: Vec<i32> = curves.iter().map(|curve| curve.light).collect();
+    lights.sort_unstable();
+    lights.dedup();
+    let length: f64 = curves.iter().map(Curve::length).sum();
+    eprintln!(
+        "lines: {} curves of {} lights, {closed} of them closed, {points} points, {length:.6} world units long; chords within \
+         {tolerance:.1e}",
+        curves.len(),
+        lights.len()
+    );
+}
+
+impl LinesArgs {
+    /// The flags of this command alone.
+    fn record(&self, tolerance: f64, command: &mut CommandLine) {
+        command.flag("tolerance", tolerance);
+        if self.hidden {
+            command.switch("hidden");
+        }
+        if self.visible {
+            command.switch("visible");
+        }
+        if let Some(unit) = self.paper.unit {
+            command.flag("unit", if unit == Unit::Mm { "mm" } else { "px" });
+        }
+        if let Some(mm) = self.paper.mm_per_unit {
+            command.flag("mm-per-unit", mm);
+        }
+    }
+}

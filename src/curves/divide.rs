@@ -1,0 +1,169 @@
+//! Divides pieces until the contours on each cell have a shape that its corners tell.
+
+use super::arc::{Arc, Cell, Tracer};
+use super::levels::{Ahead, Approach};
+use super::model::{Model, Rect, Sum, Undefined};
+use super::piece::{Piece, Scene};
+use crate::field::Contour;
+use crate::stam::{LEVELS, Net};
+
+/// A contour that is looked for.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Wanted {
+    pub light: i32,
+    pub value: f64,
+    pub contour: Contour,
+}
+
+/// A contour that may run through a cell.
+#[derive(Debug, Clone, Copy)]
+struct Candidate {
+    wanted: usize,
+    /// Error of an earlier model, and for how many divisions it has hardly become smaller.
+    error: f64,
+    stuck: u8,
+}
+
+/// Divisions of a piece: then it is as small as rounding lets two contours be told apart that moved values keep apart at saddles.
+const DEEPEST: u8 = 24;
+/// Divisions of cells that the field is undefined on mostly (its border is a curve), and at a few points (at one place).
+const DEEPEST_UNDEFINED: [u8; 2] = [6, 14];
+/// Divisions for which the error of a model may stay what it is, more or less, where it is no better than the range of its values over
+/// this factor: at kinks it halves each time, at jumps of the field and in rounding it stays.
+const STUCK: u8 = 4;
+const POOR: f64 = 64.0;
+/// Levels of an extraordinary vertex: the last ones are left for rounding.
+const DEEPEST_LEVEL: usize = LEVELS - 8;
+/// Levels beyond one that are looked at before contours are ruled out further in, and where.
+const AHEAD: usize = 2;
+const LOOKS: [[f64; 2]; 5] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0], [0.5, 0.5]];
+
+/// What a cell is to a contour.
+enum Outcome {
+    Empty,
+    /// Single-valued along an axis.
+    Simple(usize),
+    Unclear,
+}
+
+/// The contours on one patch.
+pub(super) struct Divider<'a> {
+    scene: Scene<'a>,
+    wanted: &'a [Wanted],
+    tolerance: f64,
+    arcs: Vec<Arc>,
+}
+
+/// The arcs of all wanted contours on a patch.
+pub(super) fn divide(scene: Scene, patch: usize, wanted: &[Wanted], tolerance: f64) -> Vec<Arc> {
+    let mut divider = Divider { scene, wanted, tolerance, arcs: Vec::new() };
+    let all = (0..wanted.len()).map(|wanted| Candidate { wanted, error: f64::INFINITY, stuck: 0 }).collect();
+    let net = scene.surface.net(patch, 1 + AHEAD);
+    match Piece::regular(patch, &net) {
+        Some(piece) => {
+            let model = Model::new(&scene, &piece, &Rect::WHOLE);
+            divider.cell(&piece, Rect::WHOLE, model.as_ref().map_err(|undefined| *undefined), all, 0);
+        }
+        None => divider.levels(patch, net, all),
+    }
+    divider.arcs
+}
+
+impl Divider<'_> {
+    /// Level by level towards an extraordinary vertex, while contours may be there.
+    fn levels(&mut self, patch: usize, mut net: Net, mut candidates: Vec<Candidate>) {
+        let Scene { surface, field, .. } = self.scene;
+        let is_smooth = surface.class(patch).is_some_and(|class| surface.classes()[class].has_tangent_plane());
+        let vertex = (is_smooth && !field.method.reads_curvature()).then(|| self.scene.functions(patch, [0.0; 2]));
+        let mut ahead = Ahead { vertex: vertex.flatten(), ..Ahead::default() };
+        let mut approaches = vec![Approach::NONE; self.wanted.len()];
+        for level in 1..=DEEPEST_LEVEL {
+            if matches!(&net, Net::Irregular { levels, .. } if levels.len() < level + AHEAD) {
+                net = surface.net(patch, if level < 8 { 8 + AHEAD } else { DEEPEST_LEVEL + AHEAD });
+            }
+            let pieces = Piece::level(patch, &net, level);
+            let models: Vec<_> = pieces.iter().map(|piece| Model::new(&self.scene, piece, &Rect::WHOLE)).collect();
+            for (piece, model) in pieces.iter().zip(&models) {
+                self.cell(piece, Rect::WHOLE, model.as_ref().map_err(|undefined| *undefined), candidates.clone(), 0);
+            }
+            let models: Vec<_> = models.into_iter().map(Result::ok).collect();
+            let further = (level + 1..=level + AHEAD).flat_map(|level| Piece::level(patch, &net, level));
+            let looks = further.flat_map(|piece| LOOKS.map(|at| piece.functions(&self.scene, at)));
+            ahead.further = looks.flatten().collect();
+            candidates.retain(|candidate| {
+                let weights = &self.wanted[candidate.wanted].contour.zero;
+                approaches[candidate.wanted].may_arrive(level, &models, weights, &ahead)
+            });
+            if candidates.is_empty() {
+                break;
+            }
+        }
+    }
+
+    fn cell(
+        &mut self,
+        piece: &Piece,
+        rect: Rect,
+        model: Result<&Model, Undefined>,
+        mut candidates: Vec<Candidate>,
+        depth: u8,
+    ) {
+        match model {
+            Ok(model) => candidates.retain_mut(|candidate| !self.settle(piece, rect, model, candidate, depth)),
+            Err(undefined) if depth >= DEEPEST_UNDEFINED[usize::from(undefined == Undefined::Partly)] => return,
+            Err(_) => {}
+        }
+        if candidates.is_empty() {
+            return;
+        }
+        for quarter in rect.quarters() {
+            let model = Model::new(&self.scene, piece, &quarter);
+            self.cell(piece, quarter, model.as_ref().map_err(|undefined| *undefined), candidates.clone(), depth + 1);
+        }
+    }
+
+    /// Whether the cell need not be divided for a contour; draws the arcs that are in it.
+    fn settle(&mut self, piece: &Piece, rect: Rect, model: &Model, candidate: &mut Candidate, depth: u8) -> bool {
+        let contour = &self.wanted[candidate.wanted].contour;
+        let sum = model.sum(&contour.zero);
+        let valid = contour.valid.map(|weights| model.sum(&weights));
+        let tracer = Tracer { scene: &self.scene, piece, contour, wanted: candidate.wanted, tolerance: self.tolerance };
+        let cell = Cell { rect, sum: &sum, valid: valid.as_ref() };
+        match outcome(&sum, valid.as_ref()) {
+            Outcome::Empty => true,
+            Outcome::Simple(axis) => {
+                tracer.simple(cell, axis, &mut self.arcs);
+                true
+            }
+            Outcome::Unclear if depth < DEEPEST => {
+                let is_poor = sum.spread() <= POOR * sum.error;
+                if is_poor && sum.error > 0.25 * candidate.error {
+                    candidate.stuck += 1;
+                } else {
+                    candidate.stuck = 0;
+                    candidate.error = sum.error;
+                }
+                // A jump, or nothing but rounding: no contour is there, only changes of sign.
+                candidate.stuck > STUCK
+            }
+            Outcome::Unclear => {
+                tracer.smallest(cell, &mut self.arcs);
+                true
+            }
+        }
+    }
+}
+
+fn outcome(sum: &Sum, valid: Option<&Sum>) -> Outcome {
+    let [low, high] = sum.range();
+    if low > 0.0 || high < 0.0 {
+        return Outcome::Empty;
+    }
+    if valid.is_some_and(|valid| valid.range()[1] < 0.0) {
+        return Outcome::Empty;
+    }
+    let is_simple = |axis: &usize| {
+        sum.is_monotone(*axis) && sum.is_simple_on_side(*axis, false) && sum.is_simple_on_side(*axis, true)
+    };
+    (0..2).find(is_simple).map_or(Outcome::Unclear, Outcome::Simple)
+}

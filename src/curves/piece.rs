@@ -1,0 +1,147 @@
+//! The limit surface in pieces that are bicubic: a regular patch, or a third of a level of an extraordinary vertex.
+
+use crate::field::{Camera, Field, Functions, Point};
+use crate::stam::{Curvature, Jet, Jet2, LimitSurface, Net, Window};
+use glam::DVec3;
+
+/// Part of the square of a derivative below which that of the other vanishes.
+const VANISHING: f64 = 1e-20;
+/// Sine of the angle between derivatives below which the normal has lost six of sixteen digits.
+const FOLDED: f64 = 1e-6;
+
+/// What is looked at: the functions of a field on a surface, as a camera sees it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Scene<'a> {
+    pub surface: &'a LimitSurface,
+    pub field: &'a Field,
+    pub camera: &'a Camera,
+}
+
+impl Scene<'_> {
+    /// The functions at a patch-local point, by the reference evaluation.
+    pub fn functions(&self, patch: usize, uv: [f64; 2]) -> Option<Functions> {
+        let (jet, curvature) = if self.field.method.reads_curvature() {
+            let jet = self.surface.evaluate_second(patch, uv);
+            (jet.first, jet.curvature())
+        } else {
+            (self.surface.evaluate(patch, uv), None)
+        };
+        self.of(jet, curvature)
+    }
+
+    fn of(&self, jet: Jet, curvature: Option<Curvature>) -> Option<Functions> {
+        let sight = self.camera.sight(jet.position);
+        self.field.functions(&Point { position: jet.position, normal: jet.normal, sight, curvature })
+    }
+}
+
+/// A square of a patch on which the surface is one bicubic polynomial.
+#[derive(Debug, Clone)]
+pub(super) struct Piece {
+    pub patch: usize,
+    /// First corner, patch-local.
+    pub corner: [f64; 2],
+    /// Extent, patch-local.
+    pub size: f64,
+    /// Uniform B-spline points, u fastest, relative to `origin` and divided by `scale`: near extraordinary vertices they keep
+    /// their digits.
+    net: [DVec3; 16],
+    origin: DVec3,
+    scale: f64,
+}
+
+impl Piece {
+    /// A regular patch, if the net is one.
+    pub fn regular(patch: usize, net: &Net) -> Option<Piece> {
+        let Net::Regular(points) = net else { return None };
+        let origin = points[5];
+        Some(Piece { patch, corner: [0.0; 2], size: 1.0, net: points.map(|p| p - origin), origin, scale: 1.0 })
+    }
+
+    /// The three pieces of a level of an irregular patch, round the square of half the size that the next levels fill.
+    pub fn level(patch: usize, net: &Net, level: usize) -> Vec<Piece> {
+        let Net::Irregular { limit, lambda, levels } = net else { return Vec::new() };
+        let size = 0.5f64.powi(level as i32);
+        let thirds = [[1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+        let piece = |corner: [f64; 2]| {
+            let corner = corner.map(|x| x * size);
+            let window = Window::at(corner.map(|x| x + 0.5 * size));
+            let net = std::array::from_fn(|k| levels[level - 1][window.point(k)]);
+            Piece { patch, corner, size, net, origin: *limit, scale: lambda.powi(level as i32 - 1) }
+        };
+        thirds.map(piece).into()
+    }
+
+    /// Patch-local parameters of a point of the piece.
+    pub fn to_patch(&self, [s, t]: [f64; 2]) -> [f64; 2] {
+        [self.corner[0] + self.size * s, self.corner[1] + self.size * t]
+    }
+
+    /// Bezier points, u fastest.
+    pub fn bezier(&self) -> [DVec3; 16] {
+        let of_line = |[a, b, c, d]: [DVec3; 4]| {
+            [(a + 4.0 * b + c) / 6.0, (2.0 * b + c) / 3.0, (b + 2.0 * c) / 3.0, (b + 4.0 * c + d) / 6.0]
+        };
+        let rows: [[DVec3; 4]; 4] = std::array::from_fn(|j| of_line(std::array::from_fn(|i| self.net[4 * j + i])));
+        let columns: [[DVec3; 4]; 4] = std::array::from_fn(|i| of_line(std::array::from_fn(|j| rows[j][i])));
+        std::array::from_fn(|k| self.origin + self.scale * columns[k % 4][k / 4])
+    }
+
+    /// Position at parameters of the piece, each 0 to 1.
+    pub fn position(&self, [s, t]: [f64; 2]) -> DVec3 {
+        let (bs, bt) = (basis(s)[0], basis(t)[0]);
+        let row = |j: usize| (0..4).map(|i| bs[i] * self.net[4 * j + i]).sum::<DVec3>();
+        self.origin + self.scale * (0..4).map(|j| bt[j] * row(j)).sum::<DVec3>()
+    }
+
+    /// The functions at parameters of the piece; `None` where they are undefined.
+    pub fn functions(&self, scene: &Scene, at @ [s, t]: [f64; 2]) -> Option<Functions> {
+        let second = scene.field.method.reads_curvature();
+        let ([b, d, c], [e, f, g]) = (basis(s), basis(t));
+        let mut rows = [[DVec3::ZERO; 3]; 4];
+        for (j, row) in rows.iter_mut().enumerate() {
+            for i in 0..4 {
+                let p = self.net[4 * j + i];
+                row[0] += b[i] * p;
+                row[1] += d[i] * p;
+                if second {
+                    row[2] += c[i] * p;
+                }
+            }
+        }
+        let sum = |weights: &[f64; 4], k: usize| (0..4).map(|j| weights[j] * rows[j][k]).sum::<DVec3>();
+        let (du, dv) = (sum(&e, 1), sum(&f, 0));
+        // Where derivatives vanish, the reference knows the limit of the normals; where they are parallel the patch is folded, and the
+        // normal is rounding.
+        let [long, wide] = [du, dv].map(DVec3::length_squared);
+        if long.min(wide) <= VANISHING * long.max(wide) {
+            return scene.functions(self.patch, self.to_patch(at));
+        }
+        if du.cross(dv).length_squared() <= FOLDED * FOLDED * long * wide {
+            return None;
+        }
+        // By the parameters of the piece and in its own scale: neither turns the normal.
+        let jet = Jet { normal: du.cross(dv).normalize(), ..Jet::new(self.origin + self.scale * sum(&e, 0), du, dv) };
+        let curvature = second.then(|| {
+            let of_net = Jet2 { first: jet, duu: sum(&e, 2), duv: sum(&f, 1), dvv: sum(&g, 0) };
+            of_net.curvature().map(|curvature| Curvature {
+                gaussian: curvature.gaussian / (self.scale * self.scale),
+                mean: curvature.mean / self.scale,
+                principal: curvature.principal.map(|k| k / self.scale),
+            })
+        });
+        scene.of(jet, curvature.flatten())
+    }
+}
+
+/// Values, first and second derivatives of the four uniform cubic B-splines.
+fn basis(t: f64) -> [[f64; 4]; 3] {
+    let s = 1.0 - t;
+    let (s2, t2) = (s * s, t * t);
+    let sixth = 1.0 / 6.0;
+    [
+        [s2 * s * sixth, (t2 * (3.0 * t - 6.0) + 4.0) * sixth, (s2 * (3.0 * s - 6.0) + 4.0) * sixth, t2 * t * sixth],
+        [-0.5 * s2, 0.5 * t * (3.0 * t - 4.0), 0.5 * s * (4.0 - 3.0 * s), 0.5 * t2],
+        [s, 3.0 * t - 2.0, 1.0 - 3.0 * t, t],
+    ]
+}

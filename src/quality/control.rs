@@ -1,0 +1,146 @@
+//! Which line of the control mesh a patch's edge lies on, and which vertex its corner is.
+
+use crate::mesh::SubdivMesh;
+use crate::patch::Patch;
+use std::collections::HashMap;
+
+/// A line along which patches join.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Line {
+    /// An edge of the control mesh, the lower vertex first.
+    Edge([u32; 2]),
+    /// Between quadrants of an n-gon: from the middle of the edge at this corner to the centre.
+    Spoke {
+        /// Control face.
+        face: u32,
+        /// Corner at which the edge begins.
+        corner: u32,
+    },
+    /// A line u = const or v = const inside a ptex face.
+    Inside {
+        /// Ptex face.
+        ptex: u32,
+    },
+}
+
+/// A point of the control mesh.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Spot {
+    /// A control vertex.
+    Vertex(u32),
+    /// The centre of an n-gon.
+    Centre(u32),
+    /// The middle of an edge, the lower vertex first: of edges that are not manifold.
+    Middle([u32; 2]),
+    /// A point inside a ptex face.
+    Inside(u32),
+}
+
+/// The control mesh as its ptex faces see it.
+pub(super) struct Control<'a> {
+    mesh: &'a SubdivMesh,
+    /// First corner of each face.
+    offsets: Vec<u32>,
+    /// Control face of each ptex face, and which quadrant of it.
+    ptex: Vec<[u32; 2]>,
+    /// By vertices, the lower one first.
+    sharpness: HashMap<[u32; 2], f32>,
+}
+
+fn ordered([a, b]: [u32; 2]) -> [u32; 2] {
+    [a.min(b), a.max(b)]
+}
+
+impl Control<'_> {
+    pub fn new(mesh: &SubdivMesh) -> Control<'_> {
+        let mut offset = 0;
+        let mut control = Control {
+            mesh,
+            offsets: Vec::new(),
+            ptex: Vec::new(),
+            sharpness: HashMap::with_capacity(mesh.creases.len()),
+        };
+        for (face, &size) in mesh.face_sizes.iter().enumerate() {
+            control.offsets.push(offset);
+            offset += size;
+            let quadrants = if size == 4 { 1 } else { size };
+            control.ptex.extend((0..quadrants).map(|k| [face as u32, k]));
+        }
+        // The last one counts.
+        control.sharpness.extend(mesh.creases.iter().map(|crease| (ordered(crease.vertices), crease.sharpness)));
+        control
+    }
+
+    fn corners(&self, face: u32) -> &[u32] {
+        let [face, size] = [face as usize, self.mesh.face_sizes[face as usize] as usize];
+        let first = self.offsets[face] as usize;
+        &self.mesh.face_vertices[first..first + size]
+    }
+
+    /// The edge of a face from its corner `k` on.
+    fn edge(&self, face: u32, k: u32) -> [u32; 2] {
+        let corners = self.corners(face);
+        ordered([0, 1].map(|step| corners[(k as usize + step) % corners.len()]))
+    }
+
+    /// The line that a patch's local edge lies on.
+    pub fn line(&self, patch: &Patch, edge: u8) -> Line {
+        // Edge e of the cell, counted from v = 0 counter-clockwise.
+        let cell_edge = (edge + patch.rotation) % 4;
+        let across = usize::from(cell_edge.is_multiple_of(2));
+        let far = matches!(cell_edge, 1 | 2);
+        let place = u32::from(patch.origin[across]) + u32::from(far);
+        if place != 0 && place != 1 << patch.depth[across] {
+            return Line::Inside { ptex: patch.ptex };
+        }
+        let [face, quadrant] = self.ptex[patch.ptex as usize];
+        let size = self.mesh.face_sizes[face as usize];
+        let before = (quadrant + size - 1) % size;
+        match cell_edge {
+            _ if size == 4 => Line::Edge(self.edge(face, u32::from(cell_edge))),
+            0 => Line::Edge(self.edge(face, quadrant)),
+            1 => Line::Spoke { face, corner: quadrant },
+            2 => Line::Spoke { face, corner: before },
+            _ => Line::Edge(self.edge(face, before)),
+        }
+    }
+
+    /// The point at a patch's local (0,0).
+    pub fn spot(&self, patch: &Patch) -> Spot {
+        let [u, v] = patch.to_ptex([0.0; 2]);
+        let [face, quadrant] = self.ptex[patch.ptex as usize];
+        let size = self.mesh.face_sizes[face as usize];
+        let corner = match [u, v] {
+            [0.0, 0.0] => 0,
+            [1.0, 0.0] => 1,
+            [1.0, 1.0] => 2,
+            [0.0, 1.0] => 3,
+            _ => return Spot::Inside(patch.ptex),
+        };
+        match corner {
+            _ if size == 4 => Spot::Vertex(self.corners(face)[corner]),
+            0 => Spot::Vertex(self.corners(face)[quadrant as usize]),
+            1 => Spot::Middle(self.edge(face, quadrant)),
+            2 => Spot::Centre(face),
+            _ => Spot::Middle(self.edge(face, (quadrant + size - 1) % size)),
+        }
+    }
+
+    /// Sharpness of an edge, 0 where it has none.
+    pub fn sharpness(&self, edge: [u32; 2]) -> f32 {
+        self.sharpness.get(&edge).copied().unwrap_or(0.0)
+    }
+
+    /// Edges that several faces with a surface share.
+    pub fn shared_edges(&self) -> Vec<[u32; 2]> {
+        let hole = |face: usize| self.mesh.holes.contains(&(face as u32));
+        let faces = (0..self.mesh.face_count()).filter(|&face| !hole(face)).map(|face| face as u32);
+        let sides = faces.flat_map(|face| (0..self.mesh.face_sizes[face as usize]).map(move |k| (face, k)));
+        let mut edges: Vec<[u32; 2]> = sides.map(|(face, k)| self.edge(face, k)).collect();
+        edges.sort_unstable();
+        let mut shared: Vec<[u32; 2]> =
+            edges.windows(2).filter(|pair| pair[0] == pair[1]).map(|pair| pair[0]).collect();
+        shared.dedup();
+        shared
+    }
+}

@@ -1,0 +1,89 @@
+//! Where a surface breaks, and how badly: along creases, between patches, round extraordinary vertices.
+//!
+//! Theory: a surface engineer asks of a joint how large its gap is (G0), the angle between the tangent planes (G1), and how
+//! much the curvature across it differs (G2). Lines that are mirrored show each break one order lower: an angle makes them
+//! jump, a difference in curvature gives them a kink (Beier & Chen 1994, Property 2; Ulmet 2003, section 6). Catmull-Clark surfaces
+//! are C2 but along infinitely sharp edges and at extraordinary vertices, where curvature has no limit in general: it depends on
+//! the direction, and for valences above 4 it grows without bound (Doo & Sabin 1978; Peters & Reif 2008).
+//!
+//! Practice: [`Quality::measure`] evaluates both sides of every joint of a [`LimitSurface`] and rings round its vertices.
+//! [`Continuity`] and [`LineBreak`] compare two jets, wherever they come from. docs/QUALITY.md has the definitions.
+
+mod chain;
+mod continuity;
+mod control;
+mod feature;
+mod finding;
+mod form;
+mod joint;
+mod limits;
+mod line_break;
+mod slope;
+mod vertex;
+
+pub use chain::Chain;
+pub use continuity::Continuity;
+pub use control::{Line, Spot};
+pub use feature::{Feature, FeatureKind};
+pub use finding::{Extremes, Finding};
+pub use form::Form;
+pub use joint::Piece;
+pub use limits::{Break, Limits};
+pub use line_break::LineBreak;
+pub use vertex::{RINGS, Ring, Vertex, Wedge, rings};
+
+use crate::field::{Camera, Field};
+use crate::mesh::SubdivMesh;
+use crate::stam::LimitSurface;
+use control::Control;
+use joint::{Gauge, Tally};
+
+/// A field as a camera sees it: the lines that breaks of the surface break.
+#[derive(Debug, Clone, Copy)]
+pub struct Reading<'a> {
+    /// What is read.
+    pub field: &'a Field,
+    /// From where.
+    pub camera: &'a Camera,
+}
+
+/// All that was measured of a surface.
+#[derive(Debug, Clone)]
+pub struct Quality {
+    /// Creases, infinitely sharp ones first, then semi-sharp ones; then smooth lines whose joints exceed the limits.
+    pub features: Vec<Feature>,
+    /// All joints inside the smooth surface together. They are C2 but for rounding, which this proves.
+    pub smooth: Extremes,
+    /// How many these are.
+    pub smooth_joints: usize,
+    /// Extraordinary vertices.
+    pub vertices: Vec<Vertex>,
+    /// Edges of the control mesh that several faces share, but along which nothing was compared: they are not manifold.
+    pub unjudged_edges: Vec<[u32; 2]>,
+}
+
+impl Quality {
+    /// Measures a surface. `mesh`: the control mesh that it was made of; `reading`: the field whose lines are looked at.
+    pub fn measure(
+        mesh: &SubdivMesh,
+        surface: &LimitSurface,
+        reading: Option<Reading<'_>>,
+        limits: &Limits,
+    ) -> Quality {
+        let control = Control::new(mesh);
+        let adjacency = surface.adjacency();
+        let coordinate = mesh.points.iter().fold(0.0f64, |most, p| most.max(p.abs().max_element()));
+        let gauge = Gauge { surface, control: &control, limits, reading, coordinate };
+        let Tally { smooth, smooth_pieces, pieces, mut edges } = gauge.tally(&adjacency);
+        edges.sort_unstable();
+        let mut unjudged = control.shared_edges();
+        unjudged.retain(|edge| edges.binary_search(edge).is_err());
+        Quality {
+            features: feature::features(&control, &pieces),
+            smooth,
+            smooth_joints: smooth_pieces,
+            vertices: vertex::vertices(surface, &control, &adjacency, reading, coordinate),
+            unjudged_edges: unjudged,
+        }
+    }
+}
