@@ -51,6 +51,14 @@ struct Node {
     valid: f64,
 }
 
+/// A point of the contour as the models see it.
+struct Guess {
+    position: DVec3,
+    /// How far the point may be from there.
+    off: f64,
+    valid: f64,
+}
+
 /// Smallest share of the tolerance that chords are held to at the places where they are measured.
 const SHARE: f64 = 0.7;
 /// Most halvings of an arc.
@@ -165,18 +173,26 @@ impl Tracer<'_> {
         Some(self.node(place(zero(|x| self.value(place(x)), range, line.slope(0.5) < 0.0, &line)?)))
     }
 
-    /// What the models say of the arc at a part of the cell, 0 to 1, along the parameter that is not monotone: position and V.
-    fn guess(&self, Cell { rect, sum, valid }: &Cell, axis: usize, part: f64) -> (DVec3, f64) {
-        let zero = sum.line(axis, part).zero();
-        let at = if axis == 0 { [zero, part] } else { [part, zero] };
-        (self.piece.position(rect.at(at)), valid.map_or(1.0, |valid| valid.value(at)))
+    /// What the models say of the arc at a part of the cell, 0 to 1, along the parameter that is not monotone.
+    fn guess(&self, Cell { rect, sum, valid }: &Cell, axis: usize, part: f64) -> Guess {
+        let line = sum.line(axis, part);
+        let zero = line.zero();
+        let place = |x: f64| if axis == 0 { [x, part] } else { [part, x] };
+        let off = sum.error / line.slope(zero).abs();
+        let [position, beside] =
+            [zero, if zero < 0.5 { zero + off } else { zero - off }].map(|x| self.piece.position(rect.at(place(x))));
+        Guess {
+            position,
+            off: if off < 0.5 { position.distance(beside) } else { f64::INFINITY },
+            valid: valid.map_or(1.0, |valid| valid.value(place(zero))),
+        }
     }
 
     /// Whether nothing of the arc is the contour, as clearly as the model can say.
     fn is_invalid(&self, cell: &Cell, axis: usize) -> bool {
         const PROBES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
         let Some(valid) = cell.valid else { return false };
-        let values = PROBES.map(|part| self.guess(cell, axis, part).1);
+        let values = PROBES.map(|part| self.guess(cell, axis, part).valid);
         let [low, high] = values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], &v| [l.min(v), h.max(v)]);
         high + (high - low) + valid.error < 0.0
     }
@@ -192,14 +208,16 @@ impl Tracer<'_> {
         // Where points are needed is read off the model; the points are not.
         let guess = |part: f64| self.guess(cell, axis, (a + part * (b - a) - low) / (high - low));
         let far = |p: DVec3| distance(p, from.position, to.position) > SHARE * self.tolerance;
+        let may_be_far =
+            |guess: &Guess| distance(guess.position, from.position, to.position) + guess.off > SHARE * self.tolerance;
         let middle = guess(0.5);
         // As far as V is linear, it is known between the three.
-        let bend = (middle.1 - 0.5 * (from.valid + to.valid)).abs();
-        let least = from.valid.abs().min(to.valid.abs()).min(middle.1.abs());
+        let bend = (middle.valid - 0.5 * (from.valid + to.valid)).abs();
+        let least = from.valid.abs().min(to.valid.abs()).min(middle.valid.abs());
         let is_known = is_cut || bend <= SAFE * least || halvings >= HALVINGS_CUT;
         // What is not the contour needs no points. Bends to both sides may meet the chord in the middle.
         let is_contour = from.valid > 0.0 || to.valid > 0.0;
-        if !is_known || (is_contour && (far(middle.0) || far(guess(0.25).0))) {
+        if !is_known || (is_contour && (may_be_far(&middle) || may_be_far(&guess(0.25)))) {
             let at = |part: f64| self.across(cell, axis, a + part * (b - a));
             let Some(middle) = at(0.5) else { return };
             if is_known && !far(middle.position) && !at(0.25).is_some_and(|node| far(node.position)) {
