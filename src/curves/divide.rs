@@ -26,14 +26,17 @@ struct Candidate {
 
 /// Divisions of a piece: then it is as small as rounding lets two contours be told apart that moved values keep apart at saddles.
 const DEEPEST: u8 = 24;
-/// Divisions of cells that the field is undefined on mostly (its border is a curve), and at a few points (at one place).
-const DEEPEST_UNDEFINED: [u8; 2] = [6, 14];
-/// Divisions for which the error of a model may stay what it is, more or less, where it is no better than the range of its values over
-/// this factor: at kinks it halves each time, at jumps of the field and in rounding it stays.
+/// Divisions of cells that the field is undefined on in part, up to a curve.
+const DEEPEST_UNDEFINED: u8 = 7;
+/// Divisions for which the error of a poor model may stay what it is, more or less: at kinks it halves each time, at jumps of the field and in rounding it stays.
 const STUCK: u8 = 4;
-const POOR: f64 = 64.0;
-/// Levels of an extraordinary vertex: the last ones are left for rounding.
+/// Cells of one size that a contour may leave unclear. Saddles leave a few of any size; lines along which the field touches the value (the
+/// Gaussian curvature of a ruled patch, 0) leave more and more, and what the field does there is below rounding.
+const CROWD: usize = 512;
+/// Levels of an extraordinary vertex: the last ones are left for rounding. Where there is no tangent plane, fields change by as much on
+/// every level, and ptex parameters beyond these have lost the digits for it.
 const DEEPEST_LEVEL: usize = LEVELS - 8;
+const DEEPEST_LEVEL_OF_CORNERS: usize = 12;
 /// Levels beyond one that are looked at before contours are ruled out further in, and where.
 const AHEAD: usize = 2;
 const LOOKS: [[f64; 2]; 5] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0], [0.5, 0.5]];
@@ -62,7 +65,7 @@ pub(super) fn divide(scene: Scene, patch: usize, wanted: &[Wanted], tolerance: f
     match Piece::regular(patch, &net) {
         Some(piece) => {
             let model = Model::new(&scene, &piece, &Rect::WHOLE);
-            divider.cell(&piece, Rect::WHOLE, model.as_ref().map_err(|undefined| *undefined), all, 0);
+            divider.piece(&piece, &model, all);
         }
         None => divider.levels(patch, net, all),
     }
@@ -77,14 +80,18 @@ impl Divider<'_> {
         let vertex = (is_smooth && !field.method.reads_curvature()).then(|| self.scene.functions(patch, [0.0; 2]));
         let mut ahead = Ahead { vertex: vertex.flatten(), ..Ahead::default() };
         let mut approaches = vec![Approach::NONE; self.wanted.len()];
-        for level in 1..=DEEPEST_LEVEL {
+        let deepest = if is_smooth { DEEPEST_LEVEL } else { DEEPEST_LEVEL_OF_CORNERS };
+        for level in 1..=deepest {
             if matches!(&net, Net::Irregular { levels, .. } if levels.len() < level + AHEAD) {
                 net = surface.net(patch, if level < 8 { 8 + AHEAD } else { DEEPEST_LEVEL + AHEAD });
             }
             let pieces = Piece::level(patch, &net, level);
             let models: Vec<_> = pieces.iter().map(|piece| Model::new(&self.scene, piece, &Rect::WHOLE)).collect();
             for (piece, model) in pieces.iter().zip(&models) {
-                self.cell(piece, Rect::WHOLE, model.as_ref().map_err(|undefined| *undefined), candidates.clone(), 0);
+                self.piece(piece, model, candidates.clone());
+            }
+            if models.iter().all(|model| matches!(model, Err(Undefined::Everywhere))) {
+                break;
             }
             let models: Vec<_> = models.into_iter().map(Result::ok).collect();
             let further = (level + 1..=level + AHEAD).flat_map(|level| Piece::level(patch, &net, level));
@@ -100,44 +107,75 @@ impl Divider<'_> {
         }
     }
 
-    fn cell(
-        &mut self,
-        piece: &Piece,
-        rect: Rect,
-        model: Result<&Model, Undefined>,
-        mut candidates: Vec<Candidate>,
-        depth: u8,
-    ) {
-        match model {
-            Ok(model) => candidates.retain_mut(|candidate| !self.settle(piece, rect, model, candidate, depth)),
-            Err(undefined) if depth >= DEEPEST_UNDEFINED[usize::from(undefined == Undefined::Partly)] => return,
-            Err(_) => {}
-        }
-        if candidates.is_empty() {
-            return;
-        }
-        for quarter in rect.quarters() {
-            let model = Model::new(&self.scene, piece, &quarter);
-            self.cell(piece, quarter, model.as_ref().map_err(|undefined| *undefined), candidates.clone(), depth + 1);
+    /// Divides a piece, all cells of a size before the smaller ones.
+    fn piece(&mut self, piece: &Piece, model: &Result<Model, Undefined>, candidates: Vec<Candidate>) {
+        let mut crowd = vec![0; self.wanted.len()];
+        let mut next = self.settled(piece, Rect::WHOLE, model, candidates, 0).into_iter().collect::<Vec<_>>();
+        for depth in 1..=DEEPEST {
+            let mut cells = Vec::new();
+            for (rect, candidates) in next.drain(..) {
+                for quarter in rect.quarters() {
+                    let model = Model::new(&self.scene, piece, &quarter);
+                    if let Some((rect, candidates)) = self.settled(piece, quarter, &model, candidates.clone(), depth) {
+                        cells.push((rect, candidates, model));
+                    }
+                }
+            }
+            crowd.fill(0);
+            for candidate in cells.iter().flat_map(|(_, candidates, _)| candidates) {
+                crowd[candidate.wanted] += 1;
+            }
+            for (rect, mut candidates, model) in cells {
+                candidates.retain(|candidate| {
+                    let is_kept = depth < DEEPEST && crowd[candidate.wanted] <= CROWD;
+                    if let (false, Ok(model)) = (is_kept, &model) {
+                        self.give_up(piece, rect, model, candidate);
+                    }
+                    is_kept
+                });
+                if !candidates.is_empty() {
+                    next.push((rect, candidates));
+                }
+            }
+            if next.is_empty() {
+                break;
+            }
         }
     }
 
+    /// A cell with the candidates for which it must be divided; draws the others.
+    fn settled(
+        &mut self,
+        piece: &Piece,
+        rect: Rect,
+        model: &Result<Model, Undefined>,
+        mut candidates: Vec<Candidate>,
+        depth: u8,
+    ) -> Option<(Rect, Vec<Candidate>)> {
+        match model {
+            Ok(model) => candidates.retain_mut(|candidate| !self.settle(piece, rect, model, candidate)),
+            Err(Undefined::Partly) if depth < DEEPEST_UNDEFINED => {}
+            Err(_) => return None,
+        }
+        (!candidates.is_empty()).then_some((rect, candidates))
+    }
+
     /// Whether the cell need not be divided for a contour; draws the arcs that are in it.
-    fn settle(&mut self, piece: &Piece, rect: Rect, model: &Model, candidate: &mut Candidate, depth: u8) -> bool {
+    fn settle(&mut self, piece: &Piece, rect: Rect, model: &Model, candidate: &mut Candidate) -> bool {
         let contour = &self.wanted[candidate.wanted].contour;
         let sum = model.sum(&contour.zero);
         let valid = contour.valid.map(|weights| model.sum(&weights));
-        let tracer = Tracer { scene: &self.scene, piece, contour, wanted: candidate.wanted, tolerance: self.tolerance };
         let cell = Cell { rect, sum: &sum, valid: valid.as_ref() };
         match outcome(&sum, valid.as_ref()) {
             Outcome::Empty => true,
             Outcome::Simple(axis) => {
+                let scene = &self.scene;
+                let tracer = Tracer { scene, piece, contour, wanted: candidate.wanted, tolerance: self.tolerance };
                 tracer.simple(cell, axis, &mut self.arcs);
                 true
             }
-            Outcome::Unclear if depth < DEEPEST => {
-                let is_poor = sum.spread() <= POOR * sum.error;
-                if is_poor && sum.error > 0.25 * candidate.error {
+            Outcome::Unclear => {
+                if sum.is_poor() && sum.error > 0.25 * candidate.error {
                     candidate.stuck += 1;
                 } else {
                     candidate.stuck = 0;
@@ -146,10 +184,17 @@ impl Divider<'_> {
                 // A jump, or nothing but rounding: no contour is there, only changes of sign.
                 candidate.stuck > STUCK
             }
-            Outcome::Unclear => {
-                tracer.smallest(cell, &mut self.arcs);
-                true
-            }
+        }
+    }
+
+    /// Draws what the corners of a cell say that is divided no further.
+    fn give_up(&mut self, piece: &Piece, rect: Rect, model: &Model, candidate: &Candidate) {
+        let contour = &self.wanted[candidate.wanted].contour;
+        let sum = model.sum(&contour.zero);
+        if !sum.is_poor() {
+            let scene = &self.scene;
+            let tracer = Tracer { scene, piece, contour, wanted: candidate.wanted, tolerance: self.tolerance };
+            tracer.smallest(Cell { rect, sum: &sum, valid: None }, &mut self.arcs);
         }
     }
 }

@@ -15,6 +15,9 @@ const SAFETY: f64 = 4.0;
 /// How much larger the error of a derivative may be, over the cell's extent: the square of the degree (Markov's inequality).
 const STEEPER: f64 = 16.0;
 
+/// Part of the spread of a polynomial below which its error is rounding.
+const ROUNDING: f64 = 1e-9;
+
 /// Bernstein coefficients, u fastest.
 pub(super) type Coefficients = [f64; N * N];
 
@@ -61,10 +64,10 @@ pub(super) struct Model {
 /// Why there is no model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Undefined {
-    /// At a few of the points.
+    /// At some of the points.
     Partly,
-    /// At most of them.
-    Mostly,
+    /// At all of them.
+    Everywhere,
 }
 
 impl Model {
@@ -83,8 +86,8 @@ impl Model {
         }
         match undefined {
             0 => {}
-            1..=6 => return Err(Undefined::Partly),
-            _ => return Err(Undefined::Mostly),
+            1.. if undefined < N * N => return Err(Undefined::Partly),
+            _ => return Err(Undefined::Everywhere),
         }
         let corner = |k: usize| std::array::from_fn(|c| values[c][k]);
         let corners = [0, N - 1, N * N - N, N * N - 1].map(corner);
@@ -137,6 +140,12 @@ impl Sum {
         high - low
     }
 
+    /// Whether the error is no better than the range of values over this factor.
+    pub fn is_poor(&self) -> bool {
+        const POOR: f64 = 64.0;
+        self.spread() <= POOR * self.error
+    }
+
     /// Whether it grows or shrinks everywhere along an axis.
     pub fn is_monotone(&self, axis: usize) -> bool {
         let step = [1, N][axis];
@@ -155,7 +164,9 @@ impl Sum {
             self.coefficients[if axis == 0 { k * N + fixed } else { fixed * N + k }]
         };
         let [low, high] = range((0..N).map(of), self.error);
-        if low > 0.0 || high < 0.0 {
+        // With a sign; or on the contour but for rounding, where signs at the corners are as good as any.
+        let is_rounding = self.error < ROUNDING * self.spread() && low.abs().max(high) <= 4.0 * self.error;
+        if low > 0.0 || high < 0.0 || is_rounding {
             return true;
         }
         let differences = (0..N - 1).map(|k| (N - 1) as f64 * (of(k + 1) - of(k)));

@@ -1,13 +1,17 @@
 //! The limit surface in pieces that are bicubic: a regular patch, or a third of a level of an extraordinary vertex.
 
-use crate::field::{Camera, Field, Functions, Point};
+use crate::field::{Camera, CurvatureKind, Field, Functions, Method, Point};
 use crate::stam::{Curvature, Jet, Jet2, LimitSurface, Net, Window};
 use glam::DVec3;
 
 /// Part of the square of a derivative below which that of the other vanishes.
 const VANISHING: f64 = 1e-20;
 /// Sine of the angle between derivatives below which the normal has lost six of sixteen digits.
-const FOLDED: f64 = 1e-6;
+const FOLDED: f64 = 3e-6;
+/// The same for curvature, which has the square of it below.
+const FOLDED_CURVATURE: f64 = 1e-3;
+/// Part of a curvature, or of the step between lines, that rounding may be.
+const KNOWN: f64 = 3e-11;
 
 /// What is looked at: the functions of a field on a surface, as a camera sees it.
 #[derive(Debug, Clone, Copy)]
@@ -94,6 +98,16 @@ impl Piece {
         self.origin + self.scale * (0..4).map(|j| bt[j] * row(j)).sum::<DVec3>()
     }
 
+    /// Whether rounding leaves ten digits of a curvature: it is a second difference of points over the square of their distance.
+    fn is_known(&self, curvature: &Curvature, field: &Field) -> bool {
+        let Method::Curvature(kind) = &field.method else { return true };
+        let extent = self.scale * self.net[5].distance(self.net[10]).max(self.net[6].distance(self.net[9]));
+        let largest = curvature.principal[0].abs().max(curvature.principal[1].abs());
+        let rounding = 8.0 * f64::EPSILON * (1.0 / extent + largest);
+        let rounding = if *kind == CurvatureKind::Gaussian { rounding * largest } else { rounding };
+        rounding <= KNOWN * kind.of(curvature).x.abs().max(field.light.spacing)
+    }
+
     /// The functions at parameters of the piece; `None` where they are undefined.
     pub fn functions(&self, scene: &Scene, at @ [s, t]: [f64; 2]) -> Option<Functions> {
         let second = scene.field.method.reads_curvature();
@@ -117,18 +131,21 @@ impl Piece {
         if long.min(wide) <= VANISHING * long.max(wide) {
             return scene.functions(self.patch, self.to_patch(at));
         }
-        if du.cross(dv).length_squared() <= FOLDED * FOLDED * long * wide {
+        let folded = if second { FOLDED_CURVATURE } else { FOLDED };
+        if du.cross(dv).length_squared() <= folded * folded * long * wide {
             return None;
         }
         // By the parameters of the piece and in its own scale: neither turns the normal.
         let jet = Jet { normal: du.cross(dv).normalize(), ..Jet::new(self.origin + self.scale * sum(&e, 0), du, dv) };
         let curvature = second.then(|| {
             let of_net = Jet2 { first: jet, duu: sum(&e, 2), duv: sum(&f, 1), dvv: sum(&g, 0) };
-            of_net.curvature().map(|curvature| Curvature {
+            let curvature = of_net.curvature()?;
+            let curvature = Curvature {
                 gaussian: curvature.gaussian / (self.scale * self.scale),
                 mean: curvature.mean / self.scale,
                 principal: curvature.principal.map(|k| k / self.scale),
-            })
+            };
+            self.is_known(&curvature, scene.field).then_some(curvature)
         });
         scene.of(jet, curvature.flatten())
     }

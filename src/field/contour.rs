@@ -35,7 +35,7 @@ impl Contour {
 
 /// Sine of the angle to a place where a field is undefined (light at the horizon, a pole of the sphere) at which its contours end.
 /// Values turn with one over its square there: nearer, the last digit of (u,v) would move them by more than 1e-10.
-const POLE: f64 = 1e-4;
+const POLE: f64 = 3e-4;
 
 /// Sine of an isophote's angle below which the cosine does not tell it from 0 or 180 degrees.
 const SMALLEST_ISOPHOTE: f64 = 1e-7;
@@ -129,8 +129,8 @@ impl Field {
         let distance = surface.bounds().map_or(0.0, |[low, high]| (0.5 * (low + high)).distance(light.center));
         let size = match self.method {
             Method::Sphere(_) | Method::Isophote => 180.0,
-            Method::Curvature(CurvatureKind::Gaussian) => 1.0 / (diagonal * diagonal),
-            Method::Curvature(_) => 1.0 / diagonal,
+            Method::Curvature(CurvatureKind::Gaussian) => light.spacing.max(1.0 / (diagonal * diagonal)),
+            Method::Curvature(_) => light.spacing.max(1.0 / diagonal),
             Method::Curve(_) => light.spacing,
             _ => light.spacing.max(diagonal + distance),
         };
