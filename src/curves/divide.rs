@@ -29,7 +29,7 @@ const DEEPEST: u8 = 24;
 /// Divisions of cells that the field is undefined on in part, up to a curve.
 const DEEPEST_UNDEFINED: u8 = 7;
 /// Divisions for which the error of a poor model may stay what it is, more or less: at kinks it halves each time, at jumps of the field and in rounding it stays.
-const STUCK: u8 = 4;
+const STUCK: u8 = 9;
 /// Cells of one size that a contour may leave unclear. Saddles leave a few of any size; lines along which the field touches the value (the
 /// Gaussian curvature of a ruled patch, 0) leave more and more, and what the field does there is below rounding.
 const CROWD: usize = 512;
