@@ -9,7 +9,7 @@ use glam::DVec3;
 
 #[test]
 fn functions_have_the_same_lines() {
-    let mut compared = 0;
+    let (mut compared, mut parallel) = (0, 0);
     for mesh in meshes().into_iter().filter(|mesh| ["pole_5", "crease_2_7", "dart", "sample"].contains(&&*mesh.name)) {
         let surface = LimitSurface::new(&mesh).expect("it has a surface");
         let scout = Scout::new(&surface).expect("it has patches");
@@ -34,7 +34,14 @@ fn functions_have_the_same_lines() {
         ];
         for family in &families {
             for (first, second) in [(0, 1), (1, 0), (0, family.len() - 1), (family.len() - 1, 0)] {
-                for point in family[first].iter().flat_map(|curve| &curve.points) {
+                let points = family[first].iter().flat_map(|curve| curve.points.iter().zip(&curve.places));
+                for (point, place) in points {
+                    // Where the normal is parallel to the light, some of the functions are undefined, and their lines end.
+                    let jet = surface.evaluate_ptex(place.face, [place.u, place.v]).expect("no hole").1;
+                    if jet.normal.cross(light.axes[1]).length() < 2e-3 {
+                        parallel += 1;
+                        continue;
+                    }
                     // The points are on the line; the other polyline is within the tolerance of it.
                     let off = distance(&family[second], *point);
                     assert!(
@@ -47,6 +54,7 @@ fn functions_have_the_same_lines() {
             }
         }
     }
-    println!("{compared} points compared");
+    println!("{compared} points compared, {parallel} not: the normal is parallel to the light");
+    assert!(parallel * 20 < compared);
     assert!(compared > 500);
 }
