@@ -60,12 +60,15 @@ pub struct Curve {
 /// Roundings by which values are moved: many times what evaluation makes, and far below what anybody asks for.
 const MOVED: f64 = 512.0;
 
+/// Part of the tolerance below which a whole line is no line: normals at some corners turn for ever, by one over the level.
+const SHORTEST: f64 = 1e-3;
+
 /// The contours of a field, as `camera` sees it, for pairs of light and value; chords are within `tolerance` of the surface's curve,
 /// world units.
 ///
 /// The number of the light selects the light where the field is the distance from the nearest one; elsewhere it is only written to the
 /// curve. A contour ends at boundaries and holes, where the field ceases (a mirrored ray parallel to the light plane), and at sharp
-/// edges on both sides, unless both end at the same place. Curves come in the order of `values`; the same call gives the same curves.
+/// edges on both sides, unless both end at the same place. Lines shorter than a thousandth of the tolerance are left out. Curves come in the order of `values`; the same call gives the same curves.
 ///
 /// # Panics
 /// `tolerance` is not above 0.
@@ -105,7 +108,7 @@ pub fn trace(
         }
         curve
     });
-    curves.filter(|curve| curve.points.len() > 1).collect()
+    curves.filter(|curve| curve.points.len() > 1 && curve.length() > SHORTEST * tolerance).collect()
 }
 
 impl Curve {
