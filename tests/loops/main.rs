@@ -1,8 +1,5 @@
 //! No line is missed: random scenes, traced and on a fine grid, have the same numbers of open and closed lines.
 
-#[path = "../common/mod.rs"]
-#[allow(dead_code, reason = "each test program uses its part")]
-mod common;
 mod grid;
 #[path = "../common/random_mesh.rs"]
 mod random_mesh;
