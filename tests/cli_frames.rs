@@ -180,6 +180,17 @@ fn another_mesh_of_the_same_name_is_noticed() {
     assert_eq!(run("0.25", &["--resume"]).status.code(), Some(2));
 }
 
+/// On the sphere lights go round: by a stripe that is the first picture again, by half a stripe another one.
+#[test]
+fn spheres_turn() {
+    let folder = Folder::new();
+    folder.done("--size 160x120 --frames 2 --sweep-light 2 --rig zebra --light-spacing 24 -o two.png");
+    folder.done("--size 160x120 --frames 2 --sweep-light --rig zebra --light-spacing 24 -o half.png");
+    let [a, b, c] = ["two_0001.png", "two_0002.png", "half_0002.png"].map(|name| folder.pixels(name));
+    assert!(different(&a, &b) < a.len() / 200, "{}", different(&a, &b));
+    assert!(different(&a, &c) > a.len() / 20, "{}", different(&a, &c));
+}
+
 /// What the files say makes them again.
 #[test]
 fn files_carry_the_command_that_makes_them() {
@@ -207,6 +218,7 @@ fn bad_series_are_refused() {
         ("--sweep-light", "--frames N"),
         ("--resume", "--frames N"),
         ("--frames 3 --orbit 360 --sweep-light", "two series"),
+        ("--frames 3 --sweep-light --field isophote", "changes nothing of isophote"),
         ("--frames 3 --orbit 0", "other than 0"),
         ("--frames 3 --orbit nan", "other than 0"),
         ("--frames 3 --sweep-light inf", "other than 0"),

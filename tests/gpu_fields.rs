@@ -4,11 +4,21 @@
 mod gpu_support;
 
 use catoptric::compare::Exact;
-use catoptric::field::{CurvatureKind, Field, HighlightKind, Light, Method, Mirrored, PlaneCurve, Scout};
+use catoptric::field::{CurvatureKind, Field, Grid, HighlightKind, Light, Method, Mirrored, PlaneCurve, Scout};
 use catoptric::gpu::{NO_PATCH, TableLayout, View};
 use catoptric::stam::LimitSurface;
 use glam::{DVec3, dvec3};
 use gpu_support::{gpu, mesh, meshes};
+
+/// A grid of waves, wide enough for what the meshes mirror.
+fn waves() -> Grid {
+    const SIZE: [u32; 2] = [61, 47];
+    let value = |k: u32| {
+        let [x, y] = [k % SIZE[0], k / SIZE[0]].map(f64::from);
+        (0.31 * x).sin() + (0.23 * y + 0.1 * x).cos() + 0.02 * x
+    };
+    Grid::new(SIZE, (0..SIZE[0] * SIZE[1]).map(value).collect(), 160.0).expect("a grid")
+}
 
 /// Every method, with a spacing in units of a mesh's diagonal or in degrees.
 fn methods() -> Vec<(Method, f64)> {
@@ -18,6 +28,7 @@ fn methods() -> Vec<(Method, f64)> {
         (Method::Curve(PlaneCurve::Circle), 0.3),
         (Method::Curve(PlaneCurve::Ellipse { aspect: 0.6 }), 0.3),
         (Method::Curve(PlaneCurve::Expression(expression)), 0.3),
+        (Method::Curve(PlaneCurve::Grid(waves())), 0.1),
         (Method::RayDistance, 0.3),
         (Method::Isophote, 10.0),
         (Method::Section, 0.05),

@@ -1,6 +1,6 @@
 //! Every WGSL entry point is valid, and every struct that Rust shares with WGSL has the same layout on both sides.
 
-use catoptric::field::{CurvatureKind, HighlightKind, Method, Mirrored, PlaneCurve};
+use catoptric::field::{CurvatureKind, Grid, HighlightKind, Method, Mirrored, PlaneCurve};
 use catoptric::gpu::records::*;
 use catoptric::gpu::shader::{MODULES, Module};
 use naga::{TypeInner, front::wgsl, valid};
@@ -16,6 +16,7 @@ fn methods() -> Vec<Method> {
         curve(
             "-x^2 + 3 * y ^ 0.5 / (1 + abs(x)) - max(x, min(y, pi)) * sin(x) + atan2(y, x) + pow(x, 2) - log(exp(tanh(floor(sign(cos(tan(sqrt(x))))))))",
         ),
+        Method::Curve(PlaneCurve::Grid(Grid::new([4, 5], vec![0.5; 20], 2.0).expect("a grid"))),
         Method::RayDistance,
         Method::Highlight(HighlightKind::Array),
         Method::Sphere(Mirrored::Normal),

@@ -1,16 +1,16 @@
 //! What is read off the surface, and its colours: flags.
 
 use super::Failure;
-use crate::field::Method;
+use crate::field::{Grid, Method};
 use crate::rig::{Colour, Colours, PatternName, PatternRig, checked_part};
 use clap::Args;
 
 #[derive(Debug, Args)]
 pub(super) struct FieldArgs {
-    /// What is read off the surface: reflection, curve:circle, curve:ellipse=ASPECT, curve:EXPRESSION of x and y, distance,
-    /// highlight[:array|signed|nearest|pseudo|alternative=RADIUS], sphere[:reflection|normal], normal, isophote,
+    /// What is read off the surface: reflection, curve:circle, curve:ellipse=ASPECT, curve:EXPRESSION of x and y,
+    /// curve:FILE.png[=WIDTH] (a gray picture), distance, highlight[:array|signed|nearest|pseudo|alternative=RADIUS], sphere[:reflection|normal], normal, isophote,
     /// curvature[:mean|gaussian|largest|smallest], section [default: reflection]
-    #[arg(long = "field", value_name = "FIELD")]
+    #[arg(long = "field", value_name = "FIELD", value_parser = method)]
     pub method: Option<Method>,
 }
 
@@ -43,6 +43,12 @@ pub(super) struct ColourArgs {
     /// Colour of the background at the bottom
     #[arg(long, value_name = "COLOUR")]
     background_bottom: Option<Colour>,
+}
+
+fn method(text: &str) -> Result<Method, String> {
+    let mut method: Method = text.parse()?;
+    method.grid_mut().map_or(Ok(()), Grid::read)?;
+    Ok(method)
 }
 
 fn part(text: &str) -> Result<f64, String> {

@@ -3,9 +3,10 @@
 use super::Failure;
 use super::render::Format;
 use super::rig::orbited;
-use crate::field::{Field, Pattern};
+use crate::field::{Field, Method, Pattern};
 use crate::rig::FittedRig;
 use clap::Args;
+use glam::DQuat;
 use std::path::{Path, PathBuf};
 
 /// Most frames of a series: more than an hour at 25 a second.
@@ -26,8 +27,8 @@ pub(super) struct FramesArgs {
     /// loop. A camera that is fitted is fitted to the first picture
     #[arg(long, value_name = "DEG", value_parser = way, allow_negative_numbers = true)]
     orbit: Option<f64>,
-    /// Move the light plane across its lines by DIST periods of its pattern in total; whole periods of an infinite plane
-    /// loop
+    /// Move the light plane across its lines by DIST periods of its pattern in total, or turn the sphere; whole periods of
+    /// infinite lights loop
     #[arg(long, value_name = "DIST", value_parser = way, allow_negative_numbers = true, num_args = 0..=1, default_missing_value = "1")]
     sweep_light: Option<f64>,
     /// Leave frames that are there already with the same settings, and draw the others
@@ -56,6 +57,17 @@ impl FramesArgs {
         }
     }
 
+    /// Refuses to move a light that a method reads no place of.
+    pub(super) fn check_method(&self, method: &Method) -> Result<(), Failure> {
+        let reads_place = !matches!(method, Method::Isophote | Method::Curvature(_));
+        match self.sweep_light.is_some() && !reads_place {
+            true => Err(Failure::Bad(format!(
+                "--sweep-light changes nothing of {method}, which does not read where the light is; give --orbit, or another --field"
+            ))),
+            false => Ok(()),
+        }
+    }
+
     /// Files of the series in order; `output` itself without one.
     pub(super) fn paths(&self, output: &Path) -> Result<Vec<PathBuf>, Failure> {
         let Some(count) = self.frames else { return Ok(vec![output.to_owned()]) };
@@ -80,7 +92,15 @@ impl FramesArgs {
         if let Some(periods) = self.sweep_light {
             let light = rig.light.own();
             let period = pattern.period(&Field { light, method: rig.method.clone() });
-            rig.light.center += light.axes[0] * (period * periods * progress(index, count, periods));
+            let way = period * periods * progress(index, count, periods);
+            match rig.method {
+                // Towards the lights of greater longitude.
+                Method::Sphere(_) if way != 0.0 => {
+                    rig.light.lines = DQuat::from_axis_angle(light.normal(), way.to_radians()) * light.axes[1];
+                }
+                Method::Sphere(_) => {}
+                _ => rig.light.center += light.axes[0] * way,
+            }
         }
         rig
     }

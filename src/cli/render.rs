@@ -9,7 +9,7 @@ use super::patches::PatchesArgs;
 use super::rig::RigArgs;
 use super::settings::{made_by, mesh_digest};
 use super::{Failure, Steps, load, progress};
-use crate::field::{CurvatureKind, Method, Pattern, Scout};
+use crate::field::{CurvatureKind, Method, Pattern, PlaneCurve, Scout};
 use crate::gpu::{Gpu, MAX_ENLARGE, MAX_PROXY_LEVEL, MAX_SAMPLES, Pipeline, Stage, TableLayout, Tables, View, tables};
 use crate::output::{
     Heat, Layers, Scale, check_writable, draw_legend, heat, read_exr_made_by, read_png_made_by, write_exr, write_png,
@@ -178,6 +178,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
             mesh.name
         ))
     })?;
+    args.frames.check_method(&rig.method())?;
     let fitted = args.rig.fit(&rig, &scout, args.mesh.is_none())?;
     let pattern = PatternRig::fitted(pattern, &scout, &fitted);
     let name = rig.pattern.name_for(&fitted.method);
@@ -337,6 +338,10 @@ impl Shot<'_> {
 fn legend(method: &Method) -> String {
     let unit = match method {
         Method::Sphere(_) | Method::Isophote => "degrees",
+        Method::Curve(PlaneCurve::Grid(grid)) => {
+            let name = grid.path().file_name().unwrap_or_default().display();
+            return format!("curve:{name}, 0 to 1; magenta: undefined");
+        }
         Method::Curvature(CurvatureKind::Gaussian) => "1 / world unit^2; magenta: undefined",
         Method::Curvature(_) => "1 / world unit; magenta: undefined",
         _ => "world units; magenta: undefined",

@@ -1,7 +1,7 @@
 //! How a file was made, in one line that goes into it.
 
 use super::render::RenderArgs;
-use crate::field::{Camera, Palette, Pattern, Projection};
+use crate::field::{Camera, Grid, Method, Palette, Pattern, Projection};
 use crate::gpu::View;
 use crate::mesh::{Boundary, Creasing, SubdivMesh};
 use crate::rig::{Attachment, Colours, FittedRig, PatternName};
@@ -63,7 +63,7 @@ impl CommandLine {
     /// The method and its light.
     pub(super) fn field(&mut self, rig: &FittedRig) {
         let light = &rig.light;
-        self.flag("field", &rig.method);
+        self.flag("field", method_name(&rig.method));
         if light.attached != Attachment::default() {
             self.flag("light-attached", light.attached.name());
         }
@@ -88,10 +88,26 @@ impl CommandLine {
         }
     }
 
-    /// The line, with the digest of the mesh ([`mesh_digest`]) in a comment.
-    pub(super) fn finish(self, mesh: u64) -> String {
-        format!("{} # mesh {mesh:016x}", self.0)
+    /// The line, with digests of the mesh ([`mesh_digest`]) and of the grid of a field in a comment.
+    pub(super) fn finish(self, mesh: u64, method: &Method) -> String {
+        let mut line = format!("{} # mesh {mesh:016x}", self.0);
+        if let Some((size, values)) = method.grid().and_then(Grid::net) {
+            let mut digest = Digest::new();
+            digest.bytes(bytemuck::bytes_of(&size));
+            digest.bytes(bytemuck::cast_slice(values));
+            let _ = write!(line, ", field {:016x}", digest.0);
+        }
+        line
     }
+}
+
+/// A method as it is written, without the folder of a picture: that is nobody's business.
+pub(super) fn method_name(method: &Method) -> String {
+    let mut method = method.clone();
+    if let Some(grid) = method.grid_mut() {
+        grid.set_path(grid.path().file_name().unwrap_or_default().into());
+    }
+    method.to_string()
 }
 
 /// The command that makes the picture again, with everything in it that was fitted, and digests of the files that it
@@ -104,7 +120,6 @@ pub(super) fn made_by(args: &RenderArgs, mesh: u64, rig: &FittedRig, pattern: &P
     line.field(rig);
     match (&view.pattern, pattern) {
         (Pattern::Heat { range }, _) => line.flag("pattern", format_args!("heat:{},{}", range[0], range[1])),
-        // The folder is nobody's business.
         (_, PatternName::File(path)) => line.flag("pattern", path.file_name().unwrap_or_default().display()),
         (_, name) => line.flag("pattern", name),
     }
@@ -134,7 +149,7 @@ pub(super) fn made_by(args: &RenderArgs, mesh: u64, rig: &FittedRig, pattern: &P
     if args.patches.compare {
         line.switch("compare");
     }
-    let mut text = line.finish(mesh);
+    let mut text = line.finish(mesh, &rig.method);
     if let Pattern::Picture(picture) = &view.pattern {
         let mut digest = Digest::new();
         digest.bytes(bytemuck::bytes_of(&picture.size));
@@ -196,7 +211,7 @@ mod tests {
         line.flag("light-center", "-1,2.5,1e-7");
         line.switch("hidden");
         let expected = r"'it'\''s a car.obj' '--field=curve:x^2 - y^2' --light-center=-1,2.5,1e-7 --hidden # mesh 000000000000002a";
-        assert!(line.finish(42).ends_with(&format!(" lines {expected}")));
+        assert!(line.finish(42, &Method::Reflection).ends_with(&format!(" lines {expected}")));
     }
 
     #[test]

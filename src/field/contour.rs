@@ -7,9 +7,10 @@
 //! longitude on the other side): what counts of it is where a second such function V is above 0.
 //! Practice: a tracer takes the functions once a point and has all values of a family.
 
-use super::{CurvatureKind, Field, HighlightKind, Light, Method, PlaneCurve, Point, reflection_direction};
+use super::{CurvatureKind, Field, Grid, HighlightKind, Light, Method, PlaneCurve, Point, reflection_direction};
 use crate::stam::LimitSurface;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
+use std::f64::consts::FRAC_PI_4;
 
 /// Functions of a point; those that a method does not need are 0.
 pub type Functions = [f64; 4];
@@ -60,6 +61,7 @@ impl Field {
             }
             Method::Curve(PlaneCurve::Circle) => conic(light, position, ray(normal, sight)?, 1.0)?,
             Method::Curve(PlaneCurve::Ellipse { aspect }) => conic(light, position, ray(normal, sight)?, *aspect)?,
+            Method::Curve(PlaneCurve::Grid(grid)) => on_grid(light, position, ray(normal, sight)?, grid)?,
             Method::Curve(_) | Method::Section => [self.value(point)?.x, 1.0, 0.0, 0.0],
             Method::RayDistance => distances(light, position, ray(normal, sight)?),
             Method::Highlight(HighlightKind::Array) => {
@@ -100,6 +102,7 @@ impl Field {
                 Contour::where_valid([1.0, -value * value, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0])
             }
             Method::Curve(PlaneCurve::Circle | PlaneCurve::Ellipse { .. }) => None,
+            Method::Curve(PlaneCurve::Grid(_)) => Contour::where_valid([1.0, -value, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]),
             Method::Curve(_) | Method::Section | Method::Curvature(_) => Contour::whole([1.0, -value, 0.0, 0.0]),
             Method::RayDistance | Method::Highlight(HighlightKind::Nearest) => {
                 Contour::where_valid([1.0, f64::from(light) * spacing, -value, 0.0], [0.0, 0.0, -value.abs(), spacing])
@@ -159,6 +162,24 @@ fn conic(light: &Light, position: DVec3, ray: DVec3, aspect: f64) -> Option<Func
     Some([x * x + (y / aspect).powi(2), w * w, 0.0, valid])
 }
 
+/// Functions of a grid, g and V: above 0 within the rectangle where g is defined. Outside it, where horizons are, coordinates go on with
+/// the angle instead of its tangent, to the second order: so there is something smooth on both sides of the border.
+fn on_grid(light: &Light, position: DVec3, ray: DVec3, grid: &Grid) -> Option<Functions> {
+    let half = grid.half_extents()?;
+    let [x, y, w, _] = mirrored(light, position, ray)?;
+    let side = (light.center - position).dot(light.normal()).signum();
+    // In half extents: 1 at the border, where the angle is an eighth of a turn.
+    let coordinate = |x: f64, half: f64| {
+        let beyond = (side * x / half).atan2(side * w).abs() - FRAC_PI_4;
+        match beyond > 0.0 {
+            true => (1.0 + 2.0 * beyond * (1.0 + beyond)).copysign(side * x),
+            false => x / (half * w),
+        }
+    };
+    let at = DVec2::new(coordinate(x, half.x), coordinate(y, half.y));
+    Some([grid.extended(at * half), 1.0, 0.0, 1.0 - (at * at).max_element()])
+}
+
 /// Functions of the distances from parallel lights (Ulmet 2003, eq. 4.2; Beier & Chen 1994, eq. 15): V is above 0 where half the
 /// step from light to light is more than the distance.
 fn distances(light: &Light, position: DVec3, direction: DVec3) -> Functions {
@@ -173,6 +194,37 @@ mod tests {
     use crate::field::{Curvature, Mirrored};
     use glam::dvec3;
 
+    /// A wave over what the points mirror, and beyond.
+    fn grid() -> Grid {
+        let values = (0..40 * 30).map(|k| (0.2 * f64::from(k % 40)).sin() + 0.1 * f64::from(k / 40)).collect();
+        Grid::new([40, 30], values, 25.0).expect("a grid")
+    }
+
+    /// Beyond its border g and its coordinates go on: smoothly, to the second order, and with V below 0.
+    #[test]
+    fn grids_go_on_beyond_their_border() {
+        let light = Light::new(DVec3::ZERO, DVec3::Z, DVec3::Y, 1.0);
+        let grid = grid();
+        let half = grid.half_extents().expect("it is whole");
+        let at = |angle: f64| {
+            let ray = light.axes[0] * (half.x * angle.sin()) + DVec3::NEG_Z * angle.cos();
+            on_grid(&light, DVec3::Z, ray.normalize(), &grid).expect("it is defined")
+        };
+        // Third differences with the border in their middle shrink with the cube of the step; where second derivatives jumped they
+        // would with its square.
+        let third = |h: f64| {
+            let [a, b, c, d] = [-1.5, -0.5, 0.5, 1.5].map(|k| at(FRAC_PI_4 + k * h));
+            assert!(b[3] > 0.0 && c[3] < 0.0);
+            [0, 3].map(|k| (d[k] - 3.0 * c[k] + 3.0 * b[k] - a[k]).abs())
+        };
+        let [wide, narrow] = [1e-2, 1e-3].map(third);
+        assert!((0..2).all(|k| wide[k] > 500.0 * narrow[k]), "{wide:?} {narrow:?}");
+        for angle in [1.0, 2.0, 3.0, -2.5] {
+            assert!(at(angle)[3] < -0.5 && at(angle)[0].is_finite(), "{angle}");
+        }
+        assert!((at(0.5)[0] - grid.value(DVec2::new(half.x * 0.5f64.tan(), 0.0))).abs() < 1e-13);
+    }
+
     /// F vanishes where the field has the value, and nowhere else among what is valid.
     #[test]
     fn functions_vanish_on_the_contour() {
@@ -183,6 +235,7 @@ mod tests {
             Method::Curve(PlaneCurve::Circle),
             Method::Curve(PlaneCurve::Ellipse { aspect: 0.4 }),
             Method::Curve(expression("x * y")),
+            Method::Curve(PlaneCurve::Grid(grid())),
             Method::RayDistance,
             Method::Highlight(HighlightKind::Array),
             Method::Highlight(HighlightKind::Signed),

@@ -1,8 +1,10 @@
 //! Curves in the light plane, given as contours of a function g of its coordinates.
 
 mod expression;
+mod grid;
 
 pub use expression::{Expression, ExpressionError};
+pub use grid::Grid;
 
 use glam::{DVec2, dvec2};
 
@@ -18,6 +20,8 @@ pub enum PlaneCurve {
     },
     /// Any expression in x and y, world units.
     Expression(Expression),
+    /// A gray picture.
+    Grid(Grid),
 }
 
 impl PlaneCurve {
@@ -27,6 +31,7 @@ impl PlaneCurve {
             PlaneCurve::Circle => at.length(),
             PlaneCurve::Ellipse { aspect } => at.x.hypot(at.y / aspect),
             PlaneCurve::Expression(expression) => expression.value(at),
+            PlaneCurve::Grid(grid) => grid.value(at),
         };
         value.is_finite().then(|| dvec2(value, 0.0))
     }
@@ -37,6 +42,7 @@ impl PlaneCurve {
             PlaneCurve::Circle => "length(vec2f(x, y))".to_owned(),
             PlaneCurve::Ellipse { aspect } => format!("length(vec2f(x, y / {:?}))", *aspect as f32),
             PlaneCurve::Expression(expression) => expression.wgsl(),
+            PlaneCurve::Grid(grid) => grid.wgsl(),
         }
     }
 }

@@ -25,7 +25,7 @@ pub use colours::Palette;
 pub(crate) use contour::weighted;
 pub use contour::{Contour, Functions};
 pub use curvature::CurvatureKind;
-pub use curve::{Expression, ExpressionError, PlaneCurve};
+pub use curve::{Expression, ExpressionError, Grid, PlaneCurve};
 pub use highlight::HighlightKind;
 pub use light::Light;
 pub use pattern::{Pattern, Picture};
@@ -103,6 +103,22 @@ impl Method {
             self,
             Method::Reflection | Method::Section | Method::Highlight(HighlightKind::Array) | Method::Sphere(_)
         )
+    }
+
+    /// The picture that light curves are read from, if they are.
+    pub fn grid(&self) -> Option<&Grid> {
+        match self {
+            Method::Curve(PlaneCurve::Grid(grid)) => Some(grid),
+            _ => None,
+        }
+    }
+
+    /// The same, to be read or changed.
+    pub fn grid_mut(&mut self) -> Option<&mut Grid> {
+        match self {
+            Method::Curve(PlaneCurve::Grid(grid)) => Some(grid),
+            _ => None,
+        }
     }
 
     /// Name, as in `shaders/field/NAME.wgsl`.

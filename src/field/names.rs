@@ -1,14 +1,16 @@
 //! Methods as they are written on the command line and in files.
 
-use super::{CurvatureKind, HighlightKind, Method, Mirrored, PlaneCurve};
+use super::{CurvatureKind, Grid, HighlightKind, Method, Mirrored, PlaneCurve};
 use std::fmt;
 use std::str::FromStr;
 
 /// What may be written, for people.
-const FORMS: &str = "reflection, curve:circle, curve:ellipse=ASPECT, curve:EXPRESSION of x and y, distance, \
+const FORMS: &str = "reflection, curve:circle, curve:ellipse=ASPECT, curve:EXPRESSION of x and y, \
+                     curve:FILE.png[=WIDTH], distance, \
                      highlight[:array|signed|nearest|pseudo|alternative=RADIUS], sphere[:reflection|normal], normal, isophote, \
                      curvature[:mean|gaussian|largest|smallest], section or position";
 
+/// A picture that a method names is not read: [`Grid::read`] does that.
 impl FromStr for Method {
     type Err = String;
 
@@ -43,6 +45,9 @@ fn curve(text: &str) -> Result<PlaneCurve, String> {
             .map(|aspect| PlaneCurve::Ellipse { aspect })
             .ok_or("ellipse=ASPECT takes a number above 0".into());
     }
+    if let Some(grid) = Grid::named(text) {
+        return grid.map(PlaneCurve::Grid);
+    }
     text.parse().map(PlaneCurve::Expression).map_err(|error| error.to_string())
 }
 
@@ -67,6 +72,7 @@ impl fmt::Display for Method {
             Method::Curve(PlaneCurve::Circle) => f.write_str("curve:circle"),
             Method::Curve(PlaneCurve::Ellipse { aspect }) => write!(f, "curve:ellipse={aspect}"),
             Method::Curve(PlaneCurve::Expression(expression)) => write!(f, "curve:{expression}"),
+            Method::Curve(PlaneCurve::Grid(grid)) => write!(f, "curve:{grid}"),
             Method::Highlight(kind) => match kind {
                 HighlightKind::Array => f.write_str("highlight:array"),
                 HighlightKind::Signed => f.write_str("highlight:signed"),
@@ -97,6 +103,7 @@ mod tests {
             "curve:circle",
             "curve:ellipse=0.5",
             "curve:x^2 - y",
+            "curve:contours.png=2.5",
             "distance",
             "highlight:array",
             "highlight:signed",

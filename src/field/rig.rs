@@ -1,7 +1,7 @@
 //! Camera and light that suit a surface, found by looking at it.
 
 use super::camera::horizontal_axes;
-use super::{Camera, DEFAULT_FOV, Field, HighlightKind, Light, Method, Point, reflection_direction};
+use super::{Camera, DEFAULT_FOV, Field, Grid, HighlightKind, Light, Method, PlaneCurve, Point, reflection_direction};
 use crate::stam::{Curvature, LimitSurface};
 use glam::DVec3;
 
@@ -91,7 +91,9 @@ impl Scout {
         let seen = self.visible(camera);
         let facing: DVec3 = seen.iter().map(|&(i, w)| self.normals[i] * w).sum();
         let facing = facing.try_normalize().unwrap_or(DVec3::Z);
-        let light = match method {
+        let mut method = method.clone();
+        let light = match &mut method {
+            Method::Curve(PlaneCurve::Grid(grid)) => self.under(grid, camera),
             Method::Reflection | Method::Curve(_) | Method::RayDistance => self.light(camera),
             Method::Highlight(_) => Light::new(middle + facing * (DISTANCE * diagonal), -facing, longest, diagonal),
             Method::Isophote | Method::Curvature(_) => Light::new(middle, -facing, longest, 10.0),
@@ -103,11 +105,11 @@ impl Scout {
                 Light::new(middle, longest.cross(across), across, diagonal)
             }
         };
-        let mut field = Field { light, method: method.clone() };
-        let is_fitted = matches!(method, Method::Sphere(_) | Method::Isophote | Method::Reflection);
+        let mut field = Field { light, method };
+        let is_fitted = matches!(field.method, Method::Sphere(_) | Method::Isophote | Method::Reflection);
         if !is_fitted {
             // Distances to the nearest line depend on where the lines are.
-            let plain = match method {
+            let plain = match field.method {
                 Method::RayDistance => Field { method: Method::Reflection, ..field.clone() },
                 Method::Highlight(HighlightKind::Nearest) => {
                     Field { method: Method::Highlight(HighlightKind::Array), ..field.clone() }
@@ -121,6 +123,26 @@ impl Scout {
             }
         }
         field
+    }
+
+    /// A light plane whose origin, and so the middle of a grid picture, is mirrored in the middle of what is seen. A grid without
+    /// a width gets one with which most of that mirrors it.
+    fn under(&self, grid: &mut Grid, camera: &Camera) -> Light {
+        /// Part of the mirrored points, each way, that a fitted grid holds.
+        const PARTS: [f64; 3] = [0.1, 0.5, 0.9];
+        let mut light = self.light(camera);
+        let turned = Light { axes: [light.axes[1], -light.axes[0]], ..light };
+        let seen = |light: Light| self.quantiles(&Field::reflection(light), camera, PARTS);
+        let spans = [light, turned].map(seen);
+        light.center += light.axes[0] * spans[0][1] + light.axes[1] * spans[1][1];
+        if grid.width().is_none() {
+            let [columns, rows] = grid.net().map_or([4, 4], |(size, _)| size).map(f64::from);
+            // From the middle to the farther end, without the margin where it is undefined.
+            let half = spans.map(|[low, middle, high]| (high - middle).max(middle - low));
+            let pitch = (2.0 * half[0] / (columns - 3.0)).max(2.0 * half[1] / (rows - 3.0));
+            *grid = grid.clone().wide(if pitch > 0.0 { pitch * columns } else { light.spacing });
+        }
+        light
     }
 
     /// The ends of a scale for false colours: what all but a fiftieth of the visible surface has on each side; as far from 0 on

@@ -1,6 +1,6 @@
 //! The shaders of fields, and what they are told.
 
-use crate::field::{CurvatureKind, Field, HighlightKind, Method, Mirrored};
+use crate::field::{CurvatureKind, Field, HighlightKind, Method, Mirrored, PlaneCurve};
 
 /// Kinds of highlight functions.
 const HIGHLIGHT_ARRAY: u32 = 0;
@@ -18,6 +18,7 @@ const CURVATURE_LARGEST: u32 = 2;
 const CURVATURE_SMALLEST: u32 = 3;
 
 const PLANE: &str = include_str!("../../shaders/field/plane.wgsl");
+const GRID: &str = include_str!("../../shaders/field/grid.wgsl");
 const NEAREST: &str = include_str!("../../shaders/field/nearest.wgsl");
 
 impl Method {
@@ -41,6 +42,7 @@ impl Method {
         }
         let files: &[&str] = match self {
             Method::Reflection => &[PLANE, include_str!("../../shaders/field/reflection.wgsl")],
+            Method::Curve(PlaneCurve::Grid(_)) => &[PLANE, GRID, include_str!("../../shaders/field/curve.wgsl")],
             Method::Curve(_) => &[PLANE, include_str!("../../shaders/field/curve.wgsl")],
             Method::RayDistance => &[NEAREST, include_str!("../../shaders/field/distance.wgsl")],
             Method::Highlight(_) => &[PLANE, NEAREST, include_str!("../../shaders/field/highlight.wgsl")],

@@ -150,6 +150,9 @@ impl View {
         if !(axes_ok && light.spacing > 0.0 && light.spacing.is_finite()) {
             return fail("the light needs a finite centre, perpendicular unit axes and a spacing above 0".into());
         }
+        if self.field.method.grid().is_some_and(|grid| grid.net().is_none() || grid.width().is_none()) {
+            return fail("the grid of light curves must be read, and have a width".into());
+        }
         match &self.pattern {
             Pattern::Picture(p)
                 if p.rgba8.len() != 4 * p.size[0] as usize * p.size[1] as usize || p.rgba8.is_empty() =>

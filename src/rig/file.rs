@@ -1,6 +1,7 @@
 //! Rigs as TOML or JSON files; every fault with its line.
 
 use super::{PatternName, Rig};
+use crate::field::Method;
 use std::path::{Path, PathBuf};
 
 /// How a file is written.
@@ -94,6 +95,10 @@ impl Rig {
             }
             *picture = found;
         }
+        if let Some(grid) = rig.field.as_mut().and_then(Method::grid_mut) {
+            grid.set_path(path.parent().unwrap_or(Path::new("")).join(grid.path()));
+            grid.read().map_err(|what| error(line_of_key(&text, "field"), format!("field: {what}")))?;
+        }
         Ok(rig)
     }
 
@@ -104,10 +109,16 @@ impl Rig {
     /// The picture is gone.
     pub fn write(&self, format: RigFormat, folder: &Path) -> std::io::Result<String> {
         let mut rig = self.clone();
-        if let Some(PatternName::File(picture)) = &mut rig.pattern.name {
-            let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+        let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+        let seen_from_there = |picture: &Path| -> std::io::Result<PathBuf> {
             let (full, folder) = (picture.canonicalize()?, folder.canonicalize()?);
-            *picture = full.strip_prefix(&folder).map(Path::to_owned).unwrap_or(full);
+            Ok(full.strip_prefix(&folder).map(Path::to_owned).unwrap_or(full))
+        };
+        if let Some(PatternName::File(picture)) = &mut rig.pattern.name {
+            *picture = seen_from_there(picture)?;
+        }
+        if let Some(grid) = rig.field.as_mut().and_then(Method::grid_mut) {
+            grid.set_path(seen_from_there(grid.path())?);
         }
         match format {
             RigFormat::Toml => toml::to_string(&rig).map_err(std::io::Error::other),

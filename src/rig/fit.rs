@@ -145,10 +145,12 @@ impl Rig {
         let camera = rig.camera.fit(scout, habit.map(|(direction, _)| direction));
         let method = rig.method();
         let of_preset = rig.preset.filter(|preset| preset.method() == method);
-        let light = of_preset
-            .and_then(|preset| preset.light(scout, &camera))
-            .or_else(|| habit.map(|(_, light)| light).filter(|_| method == Method::Reflection))
-            .unwrap_or_else(|| scout.field(&method, &camera).light);
+        let of_preset = of_preset.and_then(|preset| preset.light(scout, &camera));
+        let light = of_preset.or_else(|| habit.map(|(_, light)| light).filter(|_| method == Method::Reflection));
+        let Field { light, method } = match light {
+            Some(light) => Field { light, method },
+            None => scout.field(&method, &camera),
+        };
         let light = rig.light.place(&light, &camera)?;
         Ok(FittedRig { camera, method, light, palette: rig.colours.palette() })
     }

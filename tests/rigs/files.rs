@@ -26,6 +26,22 @@ fn the_documented_example_is_a_rig() {
     folder.drawn(&["--rig", "a.toml"]);
 }
 
+/// The files of docs/rigs are rigs, and draw.
+#[test]
+fn the_documented_files_are_rigs() {
+    let folder = Folder::new();
+    let rigs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/rigs");
+    let mut count = 0;
+    for entry in std::fs::read_dir(rigs).expect("the documentation") {
+        let path = entry.expect("an entry").path();
+        if RigFormat::of(&path).is_some() {
+            folder.drawn(&["--rig", path.to_str().expect("UTF-8")]);
+            count += 1;
+        }
+    }
+    assert!(count >= 2, "{count}");
+}
+
 /// Flags win over the file, the file over its preset, and all of them over what is fitted.
 #[test]
 fn flags_win_over_files_and_files_over_presets() {

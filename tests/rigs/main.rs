@@ -1,7 +1,9 @@
 //! Light rigs as files and presets: what is read, what is refused, and that files say all of a picture.
 
 mod attached;
+mod environment;
 mod files;
+mod grid;
 mod presets;
 mod refused;
 mod remade;

@@ -7,7 +7,7 @@ use super::account::Account;
 use super::args::size;
 use super::field::FieldArgs;
 use super::rig::{RigArgs, is_orthographic, positive};
-use super::settings::{CommandLine, mesh_digest};
+use super::settings::{CommandLine, mesh_digest, method_name};
 use super::{Failure, load, progress, write_out};
 use crate::curves::{self, Curve};
 use crate::field::{Camera, Projection, Scout};
@@ -173,7 +173,7 @@ pub(super) fn run(args: &LinesArgs) -> Result<(), Failure> {
     command.field(&fitted);
     family.record(&mut command);
     args.record(tolerance, &mut command);
-    let made_by = command.finish(mesh_digest(&mesh));
+    let made_by = command.finish(mesh_digest(&mesh), &field.method);
 
     let mut curves = account.time("trace", || curves::trace(&surface, &field, &camera, &family.values, tolerance));
     if field.method.is_bounded() && field.light.half[1].is_finite() {
@@ -182,7 +182,7 @@ pub(super) fn run(args: &LinesArgs) -> Result<(), Failure> {
     if args.visible || (extension == Extension::Svg && !args.hidden) {
         curves = account.time("hidden lines", || curves::visible(&surface, &camera, &curves));
     }
-    let name = field.method.to_string();
+    let name = method_name(&field.method);
     let lines = Lines { curves: &curves, field: &name, camera: &camera, made_by: &made_by };
     let format = args.paper.format(extension, &camera);
     account.time("write", || -> Result<(), Failure> {

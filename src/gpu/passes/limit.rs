@@ -77,6 +77,29 @@ fn draw(
     draw_fullscreen(device, pipeline, &groups, targets, Some(&visible.depth))
 }
 
+/// The control values of a grid, rows from top to bottom.
+pub fn grid(device: &Device, ([width, height], values): ([u32; 2], &[f64])) -> Result<wgpu::Texture, GpuError> {
+    let limit = device.limits.max_texture_dimension_2d;
+    if width > limit || height > limit {
+        return Err(GpuError::View(format!("grid of {width}x{height}: this adapter takes at most {limit} a side")));
+    }
+    let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
+    let texture = device.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("the grid"),
+        size,
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::R32Float,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    let texels: Vec<f32> = values.iter().map(|&value| value as f32).collect();
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * width), rows_per_image: None };
+    device.queue.write_texture(texture.as_image_copy(), bytemuck::cast_slice(&texels), layout, size);
+    Ok(texture)
+}
+
 fn groups(
     device: &Device,
     layout: &dyn Fn(u32) -> wgpu::BindGroupLayout,
@@ -85,6 +108,8 @@ fn groups(
 ) -> [wgpu::BindGroup; 2] {
     let [records, points, scales, patch_views] = scene.table_views();
     let mut resources = vec![(3, TextureView(&patch_views)), (4, scene.light.as_entire_binding())];
+    let grid = scene.grid.as_ref().map(whole);
+    resources.extend(grid.iter().map(|grid| (5, TextureView(grid))));
     let patch = whole(&visible.patch);
     let inputs: Vec<_> = match &visible.proxy {
         Some(proxy) => proxy.iter().map(whole).collect(),

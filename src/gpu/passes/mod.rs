@@ -15,7 +15,7 @@ use super::proxy::Proxy;
 use super::shader::{Content, Module, TILE_SIDE};
 use super::view::Tile;
 use super::{GpuError, Pipeline, Stage, Tables, View};
-use crate::field::Field;
+use crate::field::{Field, Grid};
 use fields::{Compiles, FieldPasses};
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -85,6 +85,8 @@ pub(super) struct Scene<'a> {
     pub light: wgpu::Buffer,
     pub proxy: visibility::ProxyBuffers,
     pub picture: shade::PictureTexture,
+    /// Control values of light curves.
+    pub grid: Option<wgpu::Texture>,
 }
 
 impl<'a> Scene<'a> {
@@ -103,6 +105,7 @@ impl<'a> Scene<'a> {
             light: device.buffer("the light", &[view.light_record(tables)], BufferUsages::UNIFORM)?,
             proxy: visibility::ProxyBuffers::new(device, &proxy)?,
             picture: shade::PictureTexture::new(device, view)?,
+            grid: view.field.method.grid().and_then(Grid::net).map(|net| limit::grid(device, net)).transpose()?,
         })
     }
 }
