@@ -14,7 +14,7 @@ pub(super) struct FieldArgs {
     pub method: Method,
 }
 
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 pub(super) struct PatternArgs {
     /// Shape of the lights: stripes, lattice, circles, band, a picture, or heat for false colours [default: stripes; heat for
     /// curvature]

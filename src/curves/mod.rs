@@ -21,7 +21,7 @@ mod occluder;
 mod piece;
 mod visible;
 
-pub use visible::visible;
+pub use visible::{Look, visible};
 
 use crate::field::{Camera, Contour, Field};
 use crate::stam::LimitSurface;
