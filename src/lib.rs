@@ -12,6 +12,7 @@
 //! * [`curves`]: contours of a field as exact curves on the surface;
 //! * [`quality`]: how its patches meet, and what that does to a field's lines;
 //! * [`physical`]: the points that mirror a light point into an eye;
+//! * [`rig`]: light rigs: camera, light, pattern and colours as files and presets;
 //! * [`gpu`]: the same limit for every pixel, in a fragment pipeline;
 //! * [`compare`]: how far a picture of other patches is from the exact one;
 //! * [`verify`]: all of it compared with OpenSubdiv;
@@ -42,6 +43,7 @@ pub mod page;
 pub mod patch;
 pub mod physical;
 pub mod quality;
+pub mod rig;
 pub mod stam;
 pub mod statistics;
 pub mod verify;

@@ -161,7 +161,7 @@ fn patterns_agree_with_f64() {
             // Near the horizon tubes fade.
             let to_light = light.center - image.position[i];
             let elevation = to_light.dot(light.normal()).abs() / (to_light + in_plane(&light, values[12])).length();
-            let sum: f64 = values.iter().map(|&p| pattern.radiance(&light, p).x).sum();
+            let sum: f64 = values.iter().map(|&p| pattern.radiance(&view.field, p).x).sum();
             match sum {
                 25.0 if elevation > 0.3 => {
                     light_pixels += 1;

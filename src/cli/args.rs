@@ -134,14 +134,10 @@ pub(super) struct InfoArgs {
     pub levels: Option<u32>,
 }
 
-/// Largest width and height of a picture, the texture limit of the software adapter.
-const LARGEST_SIZE: u32 = 8192;
-
 /// Parses `WxH`.
 pub(super) fn size(text: &str) -> Result<[u32; 2], String> {
-    let parse = |side: &str| side.parse().ok().filter(|n| (1..=LARGEST_SIZE).contains(n));
-    let sides = text.split_once('x').and_then(|(w, h)| Some([parse(w)?, parse(h)?]));
-    sides.ok_or_else(|| format!("give WIDTHxHEIGHT, each 1 to {LARGEST_SIZE}"))
+    let sides = text.split_once('x').and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
+    crate::rig::checked_size(sides.unwrap_or_default())
 }
 
 /// Parses `FACE,U,V`: a ptex face and parameters in 0 to 1.

@@ -2,9 +2,10 @@
 
 use super::Failure;
 use super::render::Format;
-use crate::gpu::View;
+use super::rig::orbited;
+use crate::field::{Field, Pattern};
+use crate::rig::FittedRig;
 use clap::Args;
-use glam::DQuat;
 use std::path::{Path, PathBuf};
 
 /// Most frames of a series: more than an hour at 25 a second.
@@ -66,24 +67,22 @@ impl FramesArgs {
         Ok((1..=count).map(|frame| output.with_file_name(name.of(frame))).collect())
     }
 
-    /// What frame `index` of the series shows, counted from 0; the first one shows `view` itself.
-    pub(super) fn view(&self, view: &View, index: u32) -> View {
-        let mut view = view.clone();
+    /// The rig of frame `index` of the series, counted from 0; the first one is `rig` itself.
+    pub(super) fn rig(&self, rig: &FittedRig, pattern: &Pattern, index: u32) -> FittedRig {
+        let mut rig = rig.clone();
         let count = self.frames.unwrap_or(1);
         if let Some(degrees) = self.orbit {
             let angle = degrees.to_radians() * progress(index, count, degrees / 360.0);
             if angle != 0.0 {
-                let camera = &mut view.camera;
-                let turn = DQuat::from_axis_angle(camera.up.normalize(), angle);
-                camera.eye = camera.target + turn * (camera.eye - camera.target);
+                rig.camera = orbited(rig.camera, angle);
             }
         }
         if let Some(periods) = self.sweep_light {
-            let period = view.pattern.period(view.light());
-            let light = &mut view.field.light;
-            light.center += light.axes[0] * (period * periods * progress(index, count, periods));
+            let light = rig.light.own();
+            let period = pattern.period(&Field { light, method: rig.method.clone() });
+            rig.light.center += light.axes[0] * (period * periods * progress(index, count, periods));
         }
-        view
+        rig
     }
 
     /// Whether a frame is to be drawn: not where `--resume` finds it with the same settings.

@@ -3,7 +3,7 @@
 use super::account::Account;
 use super::args::size;
 use super::compare::Pair;
-use super::field::{FieldArgs, PatternArgs};
+use super::field::{ColourArgs, FieldArgs, PatternArgs};
 use super::frames::FramesArgs;
 use super::patches::PatchesArgs;
 use super::rig::RigArgs;
@@ -14,6 +14,7 @@ use crate::gpu::{Gpu, MAX_ENLARGE, MAX_PROXY_LEVEL, MAX_SAMPLES, Pipeline, Stage
 use crate::output::{
     Heat, Layers, Scale, check_writable, draw_legend, heat, read_exr_made_by, read_png_made_by, write_exr, write_png,
 };
+use crate::rig::{CameraRig, FittedRig, PatternRig, Rig};
 use crate::stam::LimitSurface;
 use clap::{Args, ValueEnum};
 use std::fs::File;
@@ -27,13 +28,15 @@ pub(super) struct RenderArgs {
     /// Picture to write: .png, or .exr with linear colour, position, normal, ptex parameters, field and residual
     #[arg(short, long, value_name = "FILE", default_value = "view.png")]
     pub(super) output: PathBuf,
-    /// Width and height in pixels
-    #[arg(long, value_name = "WxH", default_value = "1024x1024", value_parser = size)]
-    pub(super) size: [u32; 2],
+    /// Width and height in pixels [default: 1024x1024]
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    size: Option<[u32; 2]>,
     #[command(flatten)]
-    pub(super) field: FieldArgs,
+    field: FieldArgs,
     #[command(flatten)]
-    pub(super) pattern: PatternArgs,
+    pattern: PatternArgs,
+    #[command(flatten)]
+    colours: ColourArgs,
     /// How position and normal come to a pixel
     #[arg(long, value_enum, default_value = "exact")]
     pub(super) pipeline: PipelineName,
@@ -160,8 +163,11 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
             )));
         }
         check_writable(json)?;
+        args.rig.check_apart(json)?;
     }
-    let pattern = args.pattern.read(&args.field.method)?;
+    paths.iter().try_for_each(|path| args.rig.check_apart(path))?;
+    let rig = args.rig()?;
+    let pattern = rig.pattern.read(&rig.method()).map_err(Failure::Bad)?;
     let bar = progress("drawing".to_owned());
     let mesh = account.time("read", || load(args.mesh.as_deref()))?;
     let surface =
@@ -172,21 +178,26 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
             mesh.name
         ))
     })?;
-    let first = view(args, &scout, pattern)?;
+    let fitted = args.rig.fit(&rig, &scout, args.mesh.is_none())?;
+    let pattern = PatternRig::fitted(pattern, &scout, &fitted);
+    let name = rig.pattern.name_for(&fitted.method);
     let digest = mesh_digest(&mesh);
     let mut shots = Vec::new();
     for (index, path) in paths.iter().enumerate() {
-        let view = args.frames.view(&first, index as u32);
-        let made_by = made_by(args, digest, &view);
+        let rig = args.frames.rig(&fitted, &pattern, index as u32);
+        let view = args.view(&rig, pattern.clone());
+        let made_by = made_by(args, digest, &rig, &name, &view);
         if args.frames.is_missing(path, &made_by)? {
             shots.push(Shot { path, view, made_by });
         }
     }
+    let save_rig = || args.rig.save(&fitted, PatternRig::of(name.clone(), &pattern));
     if shots.is_empty() {
+        save_rig()?;
         return account.write(args.json.as_ref(), None, samples);
     }
     let gpu = account.time("adapter", Gpu::new)?;
-    let uploaded = args.patches.upload(&mesh, &surface, args.layout(), &gpu, &mut account)?;
+    let uploaded = args.patches.upload(&mesh, &surface, args.layout(&fitted.method), &gpu, &mut account)?;
     let pair = match args.patches.compare {
         true => Some(Pair::new(args, &mesh, &surface, &gpu, &uploaded, &mut account)?),
         false => None,
@@ -207,6 +218,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     }
     bar.finish_and_clear();
     drop(steps);
+    save_rig()?;
     account.say_certificate(samples);
     account.write(args.json.as_ref(), Some(gpu.adapter()), samples)?;
     if args.timings {
@@ -225,10 +237,46 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
 
 impl RenderArgs {
     /// The layout of the tables: curvature is read from expanded ones.
-    fn layout(&self) -> TableLayout {
+    fn layout(&self, method: &Method) -> TableLayout {
         match self.layout {
-            TableLayout::Auto if self.field.method.reads_curvature() => TableLayout::Expanded,
+            TableLayout::Auto if method.reads_curvature() => TableLayout::Expanded,
             layout => layout,
+        }
+    }
+
+    /// What is said of the picture.
+    fn rig(&self) -> Result<Rig, Failure> {
+        self.rig.rig(Rig {
+            field: self.field.method.clone(),
+            camera: CameraRig { size: self.size, ..CameraRig::default() },
+            pattern: self.pattern.rig()?,
+            colours: self.colours.rig(),
+            ..Rig::default()
+        })
+    }
+
+    fn view(&self, rig: &FittedRig, pattern: Pattern) -> View {
+        let field = rig.field();
+        let usual = View::new(rig.camera, field.light);
+        View {
+            field,
+            pattern,
+            pipeline: match self.pipeline {
+                PipelineName::Exact => Pipeline::Exact,
+                PipelineName::Limit => Pipeline::Limit,
+                PipelineName::Polygon => Pipeline::Polygon,
+                PipelineName::Points => Pipeline::Points,
+            },
+            stage: match self.stage {
+                StageName::Auto => Stage::Auto,
+                StageName::Fragment => Stage::Fragment,
+                StageName::Compute => Stage::Compute,
+            },
+            proxy_level: self.proxy_level,
+            samples: self.samples,
+            enlarge: self.enlarge.unwrap_or(usual.enlarge),
+            palette: rig.palette,
+            ..usual
         }
     }
 }
@@ -294,26 +342,4 @@ fn legend(method: &Method) -> String {
         _ => "world units; magenta: undefined",
     };
     format!("{method}, {unit}")
-}
-
-fn view(args: &RenderArgs, scout: &Scout, pattern: Pattern) -> Result<View, Failure> {
-    let (camera, field) = args.rig.set_up(scout, args.size, args.mesh.is_none(), &args.field)?;
-    let mut view = View::new(camera, field.light);
-    view.pattern = PatternArgs::fitted(pattern, scout, &field, &camera);
-    view.field = field;
-    view.proxy_level = args.proxy_level;
-    view.samples = args.samples;
-    view.pipeline = match args.pipeline {
-        PipelineName::Exact => Pipeline::Exact,
-        PipelineName::Limit => Pipeline::Limit,
-        PipelineName::Polygon => Pipeline::Polygon,
-        PipelineName::Points => Pipeline::Points,
-    };
-    view.enlarge = args.enlarge.unwrap_or(view.enlarge);
-    view.stage = match args.stage {
-        StageName::Auto => Stage::Auto,
-        StageName::Fragment => Stage::Fragment,
-        StageName::Compute => Stage::Compute,
-    };
-    Ok(view)
 }

@@ -1,15 +1,26 @@
-//! Where the camera and the light stand: flags, and what is fitted where none is given.
+//! Where the camera and the light stand: flags, the light rig that they name, and what is fitted where nothing is said.
 
 use super::Failure;
 use super::args::vector;
-use super::field::FieldArgs;
-use crate::field::{Camera, DEFAULT_FOV, Field, Light, Method, Projection, Scout, sample_rig};
-use crate::gpu::MAX_FOV;
+use crate::field::{Camera, Light, Scout, sample_rig};
+use crate::output::{check_writable, write_whole};
+use crate::rig::{
+    Attachment, CameraRig, FittedRig, LightRig, PatternRig, Preset, ProjectionName, Rig, RigError, RigFormat,
+    checked_extents, checked_fov, checked_positive,
+};
 use clap::{Args, ValueEnum};
 use glam::DVec3;
+use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 pub(super) struct RigArgs {
+    /// Light rig: camera, field, light, pattern and colours from a file (docs/RIGS.md), or one by name: tunnel, showroom, zebra,
+    /// lattice, circles, highlight. Other flags win over it
+    #[arg(long, value_name = "NAME|FILE")]
+    rig: Option<PathBuf>,
+    /// Write the whole light rig of this picture, fitted values included (.toml or .json)
+    #[arg(long, value_name = "FILE")]
+    save_rig: Option<PathBuf>,
     /// Eye position [default: fit]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     eye: Option<DVec3>,
@@ -19,15 +30,19 @@ pub(super) struct RigArgs {
     /// Direction that points up [default: 0,0,1]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     up: Option<DVec3>,
-    /// Lines of sight that meet in the eye, or parallel ones
-    #[arg(long, value_enum, default_value = "perspective")]
-    projection: ProjectionName,
+    /// Lines of sight that meet in the eye, or parallel ones [default: perspective]
+    #[arg(long, value_enum)]
+    projection: Option<ProjectionFlag>,
     /// Vertical field of view of a perspective picture, in degrees [default: 26]
     #[arg(long, value_name = "DEG", value_parser = fov, allow_negative_numbers = true)]
     fov: Option<f64>,
     /// World units that the height of an orthographic picture spans [default: fit]
     #[arg(long, value_name = "H", value_parser = positive, allow_negative_numbers = true)]
     height: Option<f64>,
+    /// What the light stays with when the eye moves; with the camera, its vectors count from the eye: x to the right, y up,
+    /// z towards the viewer [default: object]
+    #[arg(long, value_name = "object|camera")]
+    light_attached: Option<Attachment>,
     /// A point of the light plane, where its coordinates are 0 [default: fit]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     light_center: Option<DVec3>,
@@ -40,122 +55,144 @@ pub(super) struct RigArgs {
     /// Distance from one light line to the next [default: fit]
     #[arg(long, value_name = "D", value_parser = positive, allow_negative_numbers = true)]
     light_spacing: Option<f64>,
-    /// Width (across the lines) and length of the light plane [default: infinite]
+    /// Width (across the lines) and length of the light plane; on the sphere, degrees of longitude and latitude [default:
+    /// infinite]
     #[arg(long, value_name = "W,L", value_parser = extents)]
     light_size: Option<[f64; 2]>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum ProjectionName {
+enum ProjectionFlag {
     Perspective,
     Orthographic,
 }
 
 pub(super) fn positive(text: &str) -> Result<f64, String> {
-    text.parse().ok().filter(|x: &f64| *x > 0.0 && x.is_finite()).ok_or("give a number above 0".to_owned())
+    checked_positive(text.parse().unwrap_or(f64::NAN))
 }
 
 fn fov(text: &str) -> Result<f64, String> {
-    let fov = text.parse().ok().filter(|x| *x > 0.0 && *x <= MAX_FOV);
-    fov.ok_or_else(|| format!("give a field of view above 0 and at most {MAX_FOV} degrees"))
+    checked_fov(text.parse().unwrap_or(f64::NAN))
 }
 
 fn extents(text: &str) -> Result<[f64; 2], String> {
-    let sides = text.split_once(',').and_then(|(w, l)| Some([positive(w).ok()?, positive(l).ok()?]));
-    sides.ok_or("give two numbers above 0, W,L".to_owned())
+    let sides = text.split_once(',').and_then(|(w, l)| Some([w.parse().ok()?, l.parse().ok()?]));
+    checked_extents(sides.unwrap_or([f64::NAN; 2]))
+}
+
+/// A rig's fault in words of the command line.
+fn bad(error: RigError) -> Failure {
+    let flag = error.key.trim_start_matches("camera.").replace('.', "-");
+    Failure::Bad(format!("--{flag} {}", error.problem))
 }
 
 impl RigArgs {
-    /// Refuses flags that contradict each other.
+    /// Refuses flags that contradict each other, and files that cannot be written.
     pub(super) fn check(&self) -> Result<(), Failure> {
         let bad = |what: &str| Err(Failure::Bad(what.to_owned()));
         match (self.projection, self.fov, self.height) {
-            (ProjectionName::Orthographic, Some(_), _) => {
-                bad("--fov does not apply to --projection orthographic; give --height, in world units, instead")
+            (Some(ProjectionFlag::Orthographic), Some(_), _) => {
+                return bad(
+                    "--fov does not apply to --projection orthographic; give --height, in world units, instead",
+                );
             }
-            (ProjectionName::Perspective, _, Some(_)) => {
-                bad("--height applies to --projection orthographic only; add that, or give --fov instead")
+            (None, _, Some(_)) if self.rig.is_none() => {
+                return bad("--height applies to --projection orthographic only; add that, or give --fov instead");
+            }
+            (Some(ProjectionFlag::Perspective), _, Some(_)) => {
+                return bad("--height applies to --projection orthographic only; add that, or give --fov instead");
+            }
+            _ => {}
+        }
+        match &self.save_rig {
+            Some(path) if RigFormat::of(path).is_none() => Err(Failure::Bad(format!(
+                "{}: not a light rig that we write; choose a name that ends in .toml or .json",
+                path.display()
+            ))),
+            Some(path) => Ok(check_writable(path)?),
+            None => Ok(()),
+        }
+    }
+
+    /// Refuses to write the rig over another file of this run.
+    pub(super) fn check_apart(&self, other: &Path) -> Result<(), Failure> {
+        match &self.save_rig {
+            Some(path) if path == other => {
+                let what = "--save-rig would overwrite it, or the other way round; choose another name";
+                Err(Failure::Bad(format!("{}: {what}", path.display())))
             }
             _ => Ok(()),
         }
     }
 
-    /// Whether lines of sight are parallel.
-    pub(super) fn is_orthographic(&self) -> bool {
-        self.projection == ProjectionName::Orthographic
-    }
-
-    /// Normal and line direction that say which light this is: those given, and its own.
-    pub(super) fn directions(&self, light: &Light) -> [DVec3; 2] {
-        [self.light_normal.unwrap_or(light.normal()), self.light_lines.unwrap_or(light.axes[1])]
-    }
-
-    /// Camera and field, fitted to a surface where flags do not say; `is_sample`: to the built-in one.
-    pub(super) fn set_up(
-        &self,
-        scout: &Scout,
-        size: [u32; 2],
-        is_sample: bool,
-        field: &FieldArgs,
-    ) -> Result<(Camera, Field), Failure> {
-        let sample = (is_sample && self.up.is_none()).then(sample_rig);
-        let camera = self.camera(scout, size, sample.map(|(direction, _)| direction));
-        let light = sample.map(|(_, light)| light).filter(|_| field.method == Method::Reflection);
-        let mut field = field.field(scout, &camera, light);
-        let light = &mut field.light;
-
-        let given = [self.light_center, self.light_normal, self.light_lines];
-        if given.iter().any(Option::is_some) {
-            let fitted = [light.center, light.normal(), light.axes[1]];
-            let [center, normal, lines] = std::array::from_fn(|i| given[i].unwrap_or(fitted[i]));
-            self.check_light(normal, lines)?;
-            *light = Light { half: light.half, ..Light::new(center, normal, lines, light.spacing) };
-        }
-        light.spacing = self.light_spacing.unwrap_or(light.spacing);
-        if let Some(size) = self.light_size {
-            light.half = size.map(|side| side / 2.0);
-        }
-        Ok((camera, field))
-    }
-
-    /// The camera, which looks against `direction` where flags do not say, by default in three-quarter view.
-    fn camera(&self, scout: &Scout, size: [u32; 2], direction: Option<DVec3>) -> Camera {
-        let up = self.up.unwrap_or(DVec3::Z);
-        let direction = direction.unwrap_or_else(|| {
-            let default = scout.camera(size, up);
-            default.eye - default.target
+    /// What is said of the picture: these flags and `more`, and where they say nothing the rig that they name.
+    pub(super) fn rig(&self, more: Rig) -> Result<Rig, Failure> {
+        let projection = self.projection.map(|projection| match projection {
+            ProjectionFlag::Perspective => ProjectionName::Perspective,
+            ProjectionFlag::Orthographic => ProjectionName::Orthographic,
         });
-        let orthographic = self.projection == ProjectionName::Orthographic;
-        let mut camera = match orthographic {
-            true => scout.orthographic_from(size, up, direction),
-            false => scout.camera_from(size, up, direction, self.fov.unwrap_or(DEFAULT_FOV)),
+        let flags = Rig {
+            camera: CameraRig {
+                eye: self.eye,
+                target: self.target,
+                up: self.up,
+                projection,
+                fov: self.fov,
+                height: self.height,
+                ..more.camera
+            },
+            light: LightRig {
+                attached: self.light_attached,
+                center: self.light_center,
+                normal: self.light_normal,
+                lines: self.light_lines,
+                spacing: self.light_spacing,
+                size: self.light_size,
+            },
+            ..more
         };
-        if let Some(target) = self.target {
-            camera.eye += target - camera.target;
-            camera.target = target;
-        }
-        camera.eye = self.eye.unwrap_or(camera.eye);
-        if orthographic {
-            camera.projection =
-                Projection::Orthographic { height: self.height.unwrap_or_else(|| scout.height_for(&camera)) };
-        }
-        camera
+        let base = match &self.rig {
+            None => Rig::default(),
+            Some(path) if RigFormat::of(path).is_some() => {
+                Rig::read(path).map_err(|error| Failure::Bad(error.to_string()))?
+            }
+            Some(name) => {
+                let name = name.display().to_string();
+                let preset: Result<Preset, String> = name.parse();
+                let preset = preset.map_err(|what| Failure::Bad(format!("--rig {name}: {what}")))?;
+                Rig { preset: Some(preset), ..Rig::default() }
+            }
+        };
+        let rig = flags.over(base).with_preset();
+        rig.check().map_err(bad)?;
+        Ok(rig)
     }
 
-    /// Refuses directions that say nothing: `Light::new` would take any instead.
-    fn check_light(&self, normal: DVec3, lines: DVec3) -> Result<(), Failure> {
-        /// Sine of the smallest angle between lines and normal: below it, their part in the plane is mostly rounding.
-        const PARALLEL: f64 = 1e-9;
-        let bad = |what: &str| Err(Failure::Bad(what.to_owned()));
-        let Some(normal) = normal.try_normalize() else {
-            return bad("--light-normal has no direction; give one that is not 0,0,0");
-        };
-        match lines.try_normalize() {
-            None => bad("--light-lines has no direction; give one that is not 0,0,0"),
-            Some(lines) if self.light_lines.is_some() && lines.cross(normal).length() < PARALLEL => bad(
-                "--light-lines is parallel to the normal of the light plane; give a direction with a part in the plane",
-            ),
-            Some(_) => Ok(()),
-        }
+    /// A rig fitted to a surface; `is_sample`: to the built-in one, which has a camera and a light of its own.
+    pub(super) fn fit(&self, rig: &Rig, scout: &Scout, is_sample: bool) -> Result<FittedRig, Failure> {
+        let habit: Option<(DVec3, Light)> = is_sample.then(sample_rig);
+        rig.fit(scout, habit).map_err(bad)
     }
+
+    /// Writes the whole rig if a file for it is named.
+    pub(super) fn save(&self, rig: &FittedRig, pattern: PatternRig) -> Result<(), Failure> {
+        let Some((path, format)) = self.save_rig.as_ref().and_then(|path| Some((path, RigFormat::of(path)?))) else {
+            return Ok(());
+        };
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let text = rig.to_rig(pattern).write(format, folder);
+        let text = text.map_err(|error| Failure::Bad(format!("{}: cannot write it: {error}", path.display())))?;
+        Ok(write_whole(path, |out| out.write_all(text.as_bytes()))?)
+    }
+}
+
+/// Whether the camera of a rig has parallel lines of sight.
+pub(super) fn is_orthographic(rig: &Rig) -> bool {
+    rig.camera.projection == Some(ProjectionName::Orthographic)
+}
+
+/// A camera turned about its up axis through the target, counter-clockwise seen from above, radians.
+pub(super) fn orbited(camera: Camera, angle: f64) -> Camera {
+    let turn = glam::DQuat::from_axis_angle(camera.up.normalize(), angle);
+    Camera { eye: camera.target + turn * (camera.eye - camera.target), ..camera }
 }

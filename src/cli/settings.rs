@@ -1,9 +1,10 @@
 //! How a file was made, in one line that goes into it.
 
 use super::render::RenderArgs;
-use crate::field::{Camera, Field, Pattern, Projection};
+use crate::field::{Camera, Palette, Pattern, Projection};
 use crate::gpu::View;
 use crate::mesh::{Boundary, Creasing, SubdivMesh};
+use crate::rig::{Attachment, Colours, FittedRig, PatternName};
 use clap::ValueEnum;
 use glam::DVec3;
 use std::fmt::{Display, Write};
@@ -59,16 +60,47 @@ impl CommandLine {
         [("eye", eye), ("target", target), ("up", up)].into_iter().for_each(|(name, v)| self.vector(name, v));
     }
 
-    /// The method and its light, whose normal and line direction are given as they were given to
-    /// [`Light::new`](crate::field::Light::new): made of those it is the same to the last digit.
-    pub(super) fn field(&mut self, field: &Field, [normal, lines]: [DVec3; 2]) {
-        let light = &field.light;
-        self.flag("field", &field.method);
-        let vectors = [("center", light.center), ("normal", normal), ("lines", lines)];
+    /// The method and its light.
+    pub(super) fn field(&mut self, rig: &FittedRig) {
+        let light = &rig.light;
+        self.flag("field", &rig.method);
+        if light.attached != Attachment::default() {
+            self.flag("light-attached", light.attached.name());
+        }
+        let vectors = [("center", light.center), ("normal", light.normal), ("lines", light.lines)];
         vectors.into_iter().for_each(|(name, v)| self.vector(&format!("light-{name}"), v));
         self.flag("light-spacing", light.spacing);
         if light.half.iter().all(|half| half.is_finite()) {
             self.flag("light-size", format_args!("{},{}", 2.0 * light.half[0], 2.0 * light.half[1]));
+        }
+    }
+
+    /// A pattern and its name.
+    pub(super) fn pattern(&mut self, pattern: &Pattern, name: &PatternName) {
+        match (pattern, name) {
+            (Pattern::Heat { range }, _) => self.flag("pattern", format_args!("heat:{},{}", range[0], range[1])),
+            // The folder is nobody's business.
+            (_, PatternName::File(path)) => self.flag("pattern", path.file_name().unwrap_or_default().display()),
+            (_, name) => self.flag("pattern", name),
+        }
+        match pattern {
+            Pattern::Stripes { width } | Pattern::Lattice { width } => self.flag("light-width", width),
+            Pattern::Circles { radius } => self.flag("light-width", 2.0 * radius),
+            Pattern::Band { radius } => self.flag("light-width", 2.0 * radius),
+            Pattern::Heat { .. } | Pattern::Picture(_) => {}
+        }
+    }
+
+    /// The colours that are not the usual ones.
+    pub(super) fn colours(&mut self, palette: Palette) {
+        let [colours, usual] = [palette, Palette::default()].map(Colours::of);
+        for (name, colour, usual) in [
+            ("paint", colours.paint, usual.paint),
+            ("light-colour", colours.light, usual.light),
+            ("background-top", colours.top, usual.top),
+            ("background-bottom", colours.bottom, usual.bottom),
+        ] {
+            colour.filter(|_| colour != usual).iter().for_each(|colour| self.flag(name, colour));
         }
     }
 
@@ -81,18 +113,13 @@ impl CommandLine {
 /// The command that makes the picture again, with everything in it that was fitted, and digests of the files that it
 /// reads. On one adapter, pictures of the same line are the same.
 ///
-/// `mesh`: the digest of the mesh ([`mesh_digest`]).
-pub(super) fn made_by(args: &RenderArgs, mesh: u64, view: &View) -> String {
+/// `mesh`: the digest of the mesh ([`mesh_digest`]); `rig`: that of `view`; `pattern`: the name of its pattern.
+pub(super) fn made_by(args: &RenderArgs, mesh: u64, rig: &FittedRig, pattern: &PatternName, view: &View) -> String {
     let mut line = CommandLine::new("render", args.mesh.as_deref());
-    line.camera(&view.camera);
-    line.field(&view.field, [view.light().normal(), view.light().axes[1]]);
-    line.flag("pattern", args.pattern.name(&view.pattern));
-    match &view.pattern {
-        Pattern::Stripes { width } | Pattern::Lattice { width } => line.flag("light-width", width),
-        Pattern::Circles { radius } => line.flag("light-width", 2.0 * radius),
-        Pattern::Band { radius } => line.flag("light-width", 2.0 * radius),
-        Pattern::Heat { .. } | Pattern::Picture(_) => {}
-    }
+    line.camera(&rig.camera);
+    line.field(rig);
+    line.pattern(&view.pattern, pattern);
+    line.colours(rig.palette);
     line.flag("pipeline", value_name(&args.pipeline));
     if view.enlarge != 1.0 {
         line.flag("enlarge", view.enlarge);

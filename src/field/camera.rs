@@ -5,6 +5,9 @@ use glam::{DMat2, DVec2, DVec3, dvec3};
 /// Vertical field of view of a fitted camera, in degrees: a short telephoto lens, as product photographers use.
 pub const DEFAULT_FOV: f64 = 26.0;
 
+/// Largest vertical field of view in degrees.
+pub const MAX_FOV: f64 = 179.0;
+
 /// Part of the picture's half width and half height that a fitted object fills.
 const FILL: f64 = 0.92;
 

@@ -20,7 +20,8 @@ mod reflection;
 mod rig;
 mod sphere;
 
-pub use camera::{Axes, Camera, DEFAULT_FOV, Projection, Ray};
+pub use camera::{Axes, Camera, DEFAULT_FOV, MAX_FOV, Projection, Ray};
+pub use colours::Palette;
 pub(crate) use contour::weighted;
 pub use contour::{Contour, Functions};
 pub use curvature::CurvatureKind;
@@ -95,9 +96,13 @@ impl Method {
         )
     }
 
-    /// Whether values are coordinates of the light plane, so that its extents bound the pattern.
+    /// Whether the light's extents bound the pattern: where values are coordinates of the light plane, or longitude and latitude,
+    /// of which the extents are degrees then.
     pub fn is_bounded(&self) -> bool {
-        matches!(self, Method::Reflection | Method::Section | Method::Highlight(HighlightKind::Array))
+        matches!(
+            self,
+            Method::Reflection | Method::Section | Method::Highlight(HighlightKind::Array) | Method::Sphere(_)
+        )
     }
 
     /// Name, as in `shaders/field/NAME.wgsl`.

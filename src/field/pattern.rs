@@ -1,6 +1,7 @@
 //! What is drawn on the light plane: f64, with hard edges; `shaders/shade.wgsl` filters the same shapes to the pixel.
 
-use super::Light;
+use super::colours::{linear_to_srgb, srgb_to_linear};
+use super::{Field, Method};
 use glam::{DVec2, DVec3, dvec2};
 
 /// A picture in linear RGB, rows from top to bottom.
@@ -42,7 +43,8 @@ pub enum Pattern {
         range: [f64; 2],
     },
     /// A picture, stretched over the light's extents, or repeated every [`Pattern::PICTURE_PERIODS`] periods of an
-    /// infinite light.
+    /// infinite light. On the sphere it goes once round: an equirectangular environment, longitude 0 and latitude 0 in its middle,
+    /// the north pole at its top.
     Picture(Picture),
 }
 
@@ -50,9 +52,11 @@ impl Pattern {
     /// Width of a repeated picture, in periods of the light; its height follows from its shape.
     pub const PICTURE_PERIODS: f64 = 8.0;
 
-    /// Light sent out at a point of the plane (world units), linear RGB from 0 to 1; black outside the light's extents.
-    pub fn radiance(&self, light: &Light, point: DVec2) -> DVec3 {
-        if !light.contains(point) {
+    /// Light sent out where a field has the value `point`, linear RGB from 0 to 1; black outside the light's extents where they
+    /// are those of the field ([`Method::is_bounded`]).
+    pub fn radiance(&self, field: &Field, point: DVec2) -> DVec3 {
+        let light = &field.light;
+        if field.method.is_bounded() && !light.contains(point) {
             return DVec3::ZERO;
         }
         // Signed distance to the middle of the nearest period, -0.5 to 0.5.
@@ -65,26 +69,32 @@ impl Pattern {
             Pattern::Band { radius } => p.x.abs() <= *radius,
             // Colours are no light.
             Pattern::Heat { .. } => false,
-            Pattern::Picture(picture) => return picture.texel(point * self.picture_scale(light) + 0.5),
+            Pattern::Picture(picture) => return picture.texel(point * self.picture_scale(field) + 0.5),
         };
         if on { DVec3::ONE } else { DVec3::ZERO }
     }
 
     /// Distance along the light's first axis after which the pattern comes back, world units: of a picture that is not
     /// repeated, its width.
-    pub fn period(&self, light: &Light) -> f64 {
+    pub fn period(&self, field: &Field) -> f64 {
         match self {
-            Pattern::Picture(_) => 1.0 / self.picture_scale(light).x,
-            _ => light.spacing,
+            Pattern::Picture(_) => 1.0 / self.picture_scale(field).x,
+            _ => field.light.spacing,
         }
     }
 
     /// Factor from plane coordinates in world units to texture coordinates (0 to 1 across the picture, y downwards; add
     /// 0.5). Ones for the other patterns.
-    pub fn picture_scale(&self, light: &Light) -> DVec2 {
+    pub fn picture_scale(&self, field: &Field) -> DVec2 {
         let Pattern::Picture(picture) = self else { return DVec2::ONE };
-        let width = light.spacing * Self::PICTURE_PERIODS;
-        let height = width * f64::from(picture.size[1]) / f64::from(picture.size[0]);
+        let Field { light, method } = field;
+        let (width, height) = match method {
+            Method::Sphere(_) => (360.0, 180.0),
+            _ => {
+                let width = light.spacing * Self::PICTURE_PERIODS;
+                (width, width * f64::from(picture.size[1]) / f64::from(picture.size[0]))
+            }
+        };
         let side = |half: f64, repeat: f64| if half.is_finite() { 2.0 * half } else { repeat };
         dvec2(1.0 / side(light.half[0], width), -1.0 / side(light.half[1], height))
     }
@@ -119,27 +129,18 @@ impl Picture {
     }
 }
 
-/// Inverse of the sRGB transfer function (IEC 61966-2-1), 0 to 1.
-fn srgb_to_linear(x: f64) -> f64 {
-    if x <= 0.04045 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }
-}
-
-/// The sRGB transfer function, 0 to 1.
-fn linear_to_srgb(x: f64) -> f64 {
-    if x <= 0.0031308 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::field::{Light, Mirrored};
 
-    fn light() -> Light {
-        Light::new(DVec3::ZERO, DVec3::Z, DVec3::Y, 2.0)
+    fn field() -> Field {
+        Field::reflection(Light::new(DVec3::ZERO, DVec3::Z, DVec3::Y, 2.0))
     }
 
     #[test]
     fn shapes() {
-        let on = |pattern: &Pattern, x: f64, y: f64| pattern.radiance(&light(), dvec2(x, y)) == DVec3::ONE;
+        let on = |pattern: &Pattern, x: f64, y: f64| pattern.radiance(&field(), dvec2(x, y)) == DVec3::ONE;
         let stripes = Pattern::Stripes { width: 0.25 };
         assert!(on(&stripes, 0.24, 9.0) && on(&stripes, -3.8, 0.0) && !on(&stripes, 0.26, 0.0));
         let lattice = Pattern::Lattice { width: 0.25 };
@@ -150,16 +151,21 @@ mod tests {
 
     #[test]
     fn extents_and_pictures() {
-        let mut light = light();
-        light.half = [4.0, 2.0];
+        let mut field = field();
+        field.light.half = [4.0, 2.0];
         let picture = Picture { size: [2, 1], rgba8: vec![255, 0, 0, 255, 0, 255, 0, 255] };
         let pattern = Pattern::Picture(picture);
-        assert_eq!(pattern.radiance(&light, dvec2(-1.0, 0.0)), DVec3::X);
-        assert_eq!(pattern.radiance(&light, dvec2(3.9, 1.9)), DVec3::Y);
-        assert_eq!(pattern.radiance(&light, dvec2(4.1, 0.0)), DVec3::ZERO);
-        assert_eq!(pattern.period(&light), 8.0);
-        light.half = [f64::INFINITY; 2];
-        assert_eq!(pattern.period(&light), 16.0);
-        assert_eq!(Pattern::Stripes { width: 0.25 }.period(&light), 2.0);
+        assert_eq!(pattern.radiance(&field, dvec2(-1.0, 0.0)), DVec3::X);
+        assert_eq!(pattern.radiance(&field, dvec2(3.9, 1.9)), DVec3::Y);
+        assert_eq!(pattern.radiance(&field, dvec2(4.1, 0.0)), DVec3::ZERO);
+        assert_eq!(pattern.period(&field), 8.0);
+        field.light.half = [f64::INFINITY; 2];
+        assert_eq!(pattern.period(&field), 16.0);
+        assert_eq!(Pattern::Stripes { width: 0.25 }.period(&field), 2.0);
+        // Once round the sphere, whatever the spacing.
+        field.method = Method::Sphere(Mirrored::Normal);
+        assert_eq!(pattern.period(&field), 360.0);
+        assert_eq!(pattern.radiance(&field, dvec2(-179.0, 30.0)), DVec3::X);
+        assert_eq!(pattern.radiance(&field, dvec2(179.0, -80.0)), DVec3::Y);
     }
 }

@@ -1,5 +1,6 @@
 //! Camera and light that suit a surface, found by looking at it.
 
+use super::camera::horizontal_axes;
 use super::{Camera, DEFAULT_FOV, Field, HighlightKind, Light, Method, Point, reflection_direction};
 use crate::stam::{Curvature, LimitSurface};
 use glam::DVec3;
@@ -162,6 +163,21 @@ impl Scout {
             });
             reached.map_or(0.0, |(x, _)| *x)
         })
+    }
+
+    /// Middle of the object's box.
+    pub fn middle(&self) -> DVec3 {
+        (self.bounds[0] + self.bounds[1]) * 0.5
+    }
+
+    /// Diagonal of the object's box, greater than 0.
+    pub fn diagonal(&self) -> f64 {
+        (self.bounds[1] - self.bounds[0]).length().max(f64::MIN_POSITIVE)
+    }
+
+    /// Unit vectors across `up`: the one along which the object is longest, and the other one.
+    pub fn horizontal(&self, up: DVec3) -> [DVec3; 2] {
+        horizontal_axes(self.bounds, up)
     }
 
     /// The axis along which the object is longest.

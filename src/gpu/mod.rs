@@ -27,11 +27,12 @@ pub mod shader;
 pub mod tables;
 mod view;
 
+pub use crate::field::{MAX_FOV, Palette};
 pub use certificate::{Certificate, State, Summary};
 pub use device::AdapterChoice;
 pub use frame::{Frame, LinearFrame, NO_PATCH, SurfaceImage, Timings};
 pub use tables::{PatchSource, TableLayout, Tables};
-pub use view::{MAX_ENLARGE, MAX_FOV, MAX_POINTS_SIDE, MAX_PROXY_LEVEL, MAX_SAMPLES, Palette, Pipeline, Stage, View};
+pub use view::{MAX_ENLARGE, MAX_POINTS_SIDE, MAX_PROXY_LEVEL, MAX_SAMPLES, Pipeline, Stage, View};
 
 use crate::stam::{Jet, LimitSurface};
 use device::Device;

@@ -6,7 +6,7 @@ use super::shader::{
     Content, PATTERN_BAND, PATTERN_CIRCLES, PATTERN_HEAT, PATTERN_LATTICE, PATTERN_PICTURE, PATTERN_STRIPES,
 };
 use super::{GpuError, Tables};
-use crate::field::{Camera, Field, Light, Pattern, Projection};
+use crate::field::{Camera, Field, Light, MAX_FOV, Palette, Pattern, Projection};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -19,8 +19,6 @@ pub const MAX_ENLARGE: f64 = 8.0;
 /// Largest side, in samples, of a picture by [`Pipeline::Points`]: points land anywhere, so it is drawn in one piece,
 /// and its intermediate textures take 16 bytes a sample.
 pub const MAX_POINTS_SIDE: u32 = 4096;
-/// Largest vertical field of view in degrees.
-pub const MAX_FOV: f64 = 179.0;
 /// Largest picture side in pixels.
 const MAX_SIZE: u32 = 32_768;
 
@@ -52,31 +50,6 @@ pub enum Stage {
     Fragment,
     /// Compute passes: some GPUs rasterise on a few of their cores only. Polygons keep their fragment pass.
     Compute,
-}
-
-/// Colours, linear RGB from 0 to 1.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Palette {
-    /// The object where it mirrors no light.
-    pub paint: [f32; 3],
-    /// The lights.
-    pub tube: [f32; 3],
-    /// Background at the top of the picture.
-    pub top: [f32; 3],
-    /// Background at the bottom.
-    pub bottom: [f32; 3],
-}
-
-impl Default for Palette {
-    /// Dark blue-grey paint and slightly warm white tubes before a light neutral background.
-    fn default() -> Self {
-        Palette {
-            paint: [0.028, 0.040, 0.060],
-            tube: [0.955, 0.945, 0.920],
-            top: [0.830, 0.840, 0.850],
-            bottom: [0.560, 0.575, 0.590],
-        }
-    }
 }
 
 /// A picture to take.
@@ -343,7 +316,7 @@ impl View {
             padding2: 0.0,
             key: key.as_vec3().to_array(),
             padding3: 0.0,
-            picture_scale: (self.pattern.picture_scale(self.light()) * scale).as_vec2().to_array(),
+            picture_scale: (self.pattern.picture_scale(&self.field) * scale).as_vec2().to_array(),
             range,
         }
     }

@@ -189,7 +189,7 @@ fn number(k: f64) -> i32 {
 fn exists(field: &Field, place: Place, light: i32) -> bool {
     let value = f64::from(light) * field.light.spacing;
     match field.method {
-        Method::Sphere(_) => value > -180.0 && value <= 180.0,
+        Method::Sphere(_) => value > -180.0 && value <= 180.0 && value.abs() <= field.light.half[0],
         // At 0 and 180 there are points, not lines.
         Method::Isophote => value > 0.0 && value < 180.0,
         _ if field.method.is_bounded() || place == Place::Nearest => value.abs() <= field.light.half[0],

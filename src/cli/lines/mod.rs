@@ -6,12 +6,13 @@ mod family;
 use super::account::Account;
 use super::args::size;
 use super::field::FieldArgs;
-use super::rig::{RigArgs, positive};
+use super::rig::{RigArgs, is_orthographic, positive};
 use super::settings::{CommandLine, mesh_digest};
 use super::{Failure, load, progress, write_out};
 use crate::curves::{self, Curve};
-use crate::field::{Camera, Light, Projection, Scout};
+use crate::field::{Camera, Projection, Scout};
 use crate::output::{Lines, LinesFormat, MM_PER_PIXEL, check_writable, write_whole};
+use crate::rig::{CameraRig, Rig};
 use crate::stam::LimitSurface;
 use clap::{Args, ValueEnum};
 use family::FamilyArgs;
@@ -29,9 +30,9 @@ pub(super) struct LinesArgs {
     /// File to write: .svg (the picture), .dxf, .obj, .usda or .json (in space) [default: JSON on standard output]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Width and height of the picture in pixels
-    #[arg(long, value_name = "WxH", default_value = "1024x1024", value_parser = size)]
-    size: [u32; 2],
+    /// Width and height of the picture in pixels [default: 1024x1024]
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    size: Option<[u32; 2]>,
     #[command(flatten)]
     field: FieldArgs,
     #[command(flatten)]
@@ -140,10 +141,12 @@ pub(super) fn run(args: &LinesArgs) -> Result<(), Failure> {
     let mut account = Account::default();
     let extension = args.output.as_deref().map_or(Ok(Extension::Json), Extension::of)?;
     args.rig.check()?;
-    args.paper.check(extension, args.rig.is_orthographic())?;
-    args.family.check(&args.field.method)?;
+    let rig = args.rig()?;
+    args.paper.check(extension, is_orthographic(&rig))?;
+    args.family.check(&rig.method())?;
     if let Some(path) = &args.output {
         check_writable(path)?;
+        args.rig.check_apart(path)?;
     }
     let bar = progress("tracing".to_owned());
     let mesh = account.time("read", || load(args.mesh.as_deref()))?;
@@ -160,15 +163,14 @@ pub(super) fn run(args: &LinesArgs) -> Result<(), Failure> {
             "--tolerance {tolerance:e} is below rounding here; give {least:.0e} or more"
         )));
     }
-    let (camera, mut field) = args.rig.set_up(&scout, args.size, args.mesh.is_none(), &args.field)?;
+    let mut fitted = args.rig.fit(&rig, &scout, args.mesh.is_none())?;
+    let camera = fitted.camera;
+    let mut field = fitted.field();
     let family = account.time("lights", || args.family.family(&scout, &camera, &mut field));
-    // Made of what is recorded, so that the same light comes of the record, to the last digit.
-    let Light { center, half, spacing, .. } = field.light;
-    let directions = args.rig.directions(&field.light);
-    field.light = Light { half, ..Light::new(center, directions[0], directions[1], spacing) };
+    fitted.light.spacing = field.light.spacing;
     let mut command = CommandLine::new("lines", args.mesh.as_deref());
     command.camera(&camera);
-    command.field(&field, directions);
+    command.field(&fitted);
     family.record(&mut command);
     args.record(tolerance, &mut command);
     let made_by = command.finish(mesh_digest(&mesh));
@@ -180,7 +182,7 @@ pub(super) fn run(args: &LinesArgs) -> Result<(), Failure> {
     if args.visible || (extension == Extension::Svg && !args.hidden) {
         curves = account.time("hidden lines", || curves::visible(&surface, &camera, &curves));
     }
-    let name = args.field.method.to_string();
+    let name = field.method.to_string();
     let lines = Lines { curves: &curves, field: &name, camera: &camera, made_by: &made_by };
     let format = args.paper.format(extension, &camera);
     account.time("write", || -> Result<(), Failure> {
@@ -193,6 +195,7 @@ pub(super) fn run(args: &LinesArgs) -> Result<(), Failure> {
             }
         }
     })?;
+    args.rig.save(&fitted, rig.pattern)?;
     bar.finish_and_clear();
     family.say();
     say(&curves, tolerance);
@@ -219,6 +222,12 @@ fn say(curves: &[Curve], tolerance: f64) {
 }
 
 impl LinesArgs {
+    /// What is said of field, camera and light.
+    fn rig(&self) -> Result<Rig, Failure> {
+        let camera = CameraRig { size: self.size, ..CameraRig::default() };
+        self.rig.rig(Rig { field: self.field.method.clone(), camera, ..Rig::default() })
+    }
+
     /// The flags of this command alone.
     fn record(&self, tolerance: f64, command: &mut CommandLine) {
         command.flag("tolerance", tolerance);

@@ -6,14 +6,16 @@ mod table;
 
 use super::account::Account;
 use super::args::size;
-use super::field::FieldArgs;
+use super::field::{ColourArgs, FieldArgs, PatternArgs};
 use super::rig::{RigArgs, positive};
 use super::settings::{CommandLine, mesh_digest};
 use super::{Failure, load, progress, write_out};
-use crate::field::{Camera, Field, Light, Scout};
+use crate::field::{Field, Pattern, Scout};
+use crate::gpu::View;
 use crate::mesh::SubdivMesh;
 use crate::output::check_writable;
 use crate::quality::{FeatureKind, Kind, Limits, Quality, Ranked, Reading};
+use crate::rig::{CameraRig, FittedRig, PatternName, PatternRig, Rig};
 use crate::stam::LimitSurface;
 use clap::{Args, ValueEnum};
 use picture::Picture;
@@ -47,11 +49,15 @@ pub(super) struct QualityArgs {
     /// What is measured but neither judged nor listed, for breaks that are meant
     #[arg(long, value_name = "KIND,...", value_enum, value_delimiter = ',')]
     ignore: Vec<Ignored>,
-    /// Width and height of the picture in pixels
-    #[arg(long, value_name = "WxH", default_value = "1024x1024", value_parser = size)]
-    size: [u32; 2],
+    /// Width and height of the picture in pixels, legend excluded [default: 1024x1024]
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    size: Option<[u32; 2]>,
     #[command(flatten)]
     field: FieldArgs,
+    #[command(flatten)]
+    pattern: PatternArgs,
+    #[command(flatten)]
+    colours: ColourArgs,
     #[command(flatten)]
     rig: RigArgs,
     /// Print how long each step took
@@ -147,6 +153,8 @@ pub(super) fn run(args: &QualityArgs) -> Result<(), Failure> {
     let mut account = Account::default();
     args.rig.check()?;
     args.check_files()?;
+    let rig = args.rig()?;
+    let pattern = rig.pattern.read(&rig.method()).map_err(Failure::Bad)?;
     let bar = progress("measuring".to_owned());
     let mesh = account.time("read", || load(args.mesh.as_deref()))?;
     let surface =
@@ -155,11 +163,10 @@ pub(super) fn run(args: &QualityArgs) -> Result<(), Failure> {
         let what = "no face has a limit surface (holes, or boundary rule none); nothing to measure";
         Failure::Bad(format!("{}: {what}", mesh.name))
     })?;
-    let (camera, mut field) = args.rig.set_up(&scout, args.size, args.mesh.is_none(), &args.field)?;
-    // Made of what is recorded, so that the same light comes of the record, to the last digit.
-    let Light { center, half, spacing, .. } = field.light;
-    let directions = args.rig.directions(&field.light);
-    field.light = Light { half, ..Light::new(center, directions[0], directions[1], spacing) };
+    let fitted = args.rig.fit(&rig, &scout, args.mesh.is_none())?;
+    let (camera, field) = (fitted.camera, fitted.field());
+    let pattern = PatternRig::fitted(pattern, &scout, &fitted);
+    let name = rig.pattern.name_for(&fitted.method);
 
     let asked =
         AskedLimits { gap: args.gap, angle_deg: args.angle, percent: args.curvature, mm_per_unit: args.mm_per_unit };
@@ -178,15 +185,20 @@ pub(super) fn run(args: &QualityArgs) -> Result<(), Failure> {
         limits: asked,
         made_by: String::new(),
     };
-    verdict.made_by = args.made_by(&verdict, &camera, directions);
+    verdict.made_by = args.made_by(&verdict, &fitted, (&pattern, &name));
     if let Some(path) = &args.output {
-        let picture = Picture { surface: &surface, scout: &scout, camera: &camera, count: args.count };
+        let mut view = View::new(camera, field.light);
+        view.field = field.clone();
+        view.pattern = pattern.clone();
+        view.palette = fitted.palette;
+        let picture = Picture { surface: &surface, view: &view, count: args.count };
         picture.draw(path, &verdict, &mut account)?;
     }
     if let Some(path) = &args.json {
         let text = account.time("write", || record::json(&verdict)).map_err(std::io::Error::from)?;
         write_out(Some(path), &text)?;
     }
+    args.rig.save(&fitted, PatternRig::of(name, &pattern))?;
     bar.finish_and_clear();
     write_out(None, table::text(&verdict, args.count).as_bytes())?;
     if args.timings {
@@ -208,14 +220,31 @@ impl QualityArgs {
                 return Err(Failure::Bad(format!("{}: {what}", path.display())));
             }
         }
-        Ok([&self.output, &self.json].into_iter().flatten().try_for_each(|path| check_writable(path))?)
+        for path in [&self.output, &self.json].into_iter().flatten() {
+            check_writable(path)?;
+            self.rig.check_apart(path)?;
+        }
+        Ok(())
+    }
+
+    /// What is said of the picture.
+    fn rig(&self) -> Result<Rig, Failure> {
+        self.rig.rig(Rig {
+            field: self.field.method.clone(),
+            camera: CameraRig { size: self.size, ..CameraRig::default() },
+            pattern: self.pattern.rig()?,
+            colours: self.colours.rig(),
+            ..Rig::default()
+        })
     }
 
     /// The command that makes the same files again.
-    fn made_by(&self, verdict: &Verdict<'_>, camera: &Camera, directions: [glam::DVec3; 2]) -> String {
+    fn made_by(&self, verdict: &Verdict<'_>, rig: &FittedRig, (pattern, name): (&Pattern, &PatternName)) -> String {
         let mut command = CommandLine::new("quality", self.mesh.as_deref());
-        command.camera(camera);
-        command.field(verdict.field, directions);
+        command.camera(&rig.camera);
+        command.field(rig);
+        command.pattern(pattern, name);
+        command.colours(rig.palette);
         let limits = &verdict.limits;
         for (flag, value) in [("gap", limits.gap), ("angle", limits.angle_deg), ("curvature", limits.percent)] {
             command.flag(flag, value);

@@ -3,9 +3,7 @@
 use super::Verdict;
 use crate::cli::Failure;
 use crate::cli::account::Account;
-use crate::cli::field::PatternArgs;
 use crate::curves::{Curve, Look, Place};
-use crate::field::{Camera, Scout};
 use crate::gpu::{Gpu, TableLayout, View};
 use crate::output::{Canvas, Drawn, Mark, Panel, Pen, Scale, in_picture, sheet, write_png};
 use crate::quality::{Piece, Ranked, Subject};
@@ -23,8 +21,7 @@ const CHORDS: u32 = 8;
 
 pub(super) struct Picture<'a> {
     pub surface: &'a LimitSurface,
-    pub scout: &'a Scout,
-    pub camera: &'a Camera,
+    pub view: &'a View,
     /// How many are numbered.
     pub count: usize,
 }
@@ -42,16 +39,12 @@ struct Shown<'a> {
 impl Picture<'_> {
     pub fn draw(&self, path: &Path, verdict: &Verdict<'_>, account: &mut Account) -> Result<(), Failure> {
         let gpu = account.time("adapter", Gpu::new)?;
-        let mut view = View::new(*self.camera, verdict.field.light);
-        view.field = verdict.field.clone();
-        let pattern = PatternArgs::default().read(&view.field.method)?;
-        view.pattern = PatternArgs::fitted(pattern, self.scout, &view.field, self.camera);
-        let layout = match view.field.method.reads_curvature() {
+        let layout = match self.view.field.method.reads_curvature() {
             true => TableLayout::Expanded,
             false => TableLayout::Auto,
         };
         let tables = account.time("tables", || gpu.upload_as(self.surface, layout))?;
-        let frame = gpu.render(&tables, &view)?;
+        let frame = gpu.render(&tables, self.view)?;
         account.add(&frame.timings);
         let size = frame.size;
         let shown = account.time("hidden lines", || self.shown(verdict));
@@ -71,7 +64,7 @@ impl Picture<'_> {
     }
 
     fn shown<'a>(&self, verdict: &'a Verdict<'_>) -> Vec<Shown<'a>> {
-        let look = Look::new(self.surface, self.camera);
+        let look = Look::new(self.surface, &self.view.camera);
         let scale = severities(verdict);
         let of = |ranked: &'a Ranked<'a>| {
             let pieces = match ranked.subject {
@@ -79,10 +72,11 @@ impl Picture<'_> {
                 Subject::Vertex(_) => &[],
             };
             let curves: Vec<Curve> = pieces.iter().map(|piece| self.curve(piece)).collect();
-            let flat = |curves: &[Curve]| curves.iter().flat_map(|curve| in_picture(self.camera, curve)).collect();
+            let flat =
+                |curves: &[Curve]| curves.iter().flat_map(|curve| in_picture(&self.view.camera, curve)).collect();
             let spot = ranked.spot().and_then(|(_, position)| {
-                let at = DVec2::from_array(self.camera.project(position)?);
-                let size = DVec2::from_array(self.camera.size.map(f64::from));
+                let at = DVec2::from_array(self.view.camera.project(position)?);
+                let size = DVec2::from_array(self.view.camera.size.map(f64::from));
                 let is_inside = at.cmpge(DVec2::ZERO).all() && at.cmplt(size).all();
                 is_inside.then(|| (at, look.sees(position)))
             });

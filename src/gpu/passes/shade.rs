@@ -4,7 +4,7 @@ use super::{
     Depth, Drawing, Passes, PictureTargets, SAMPLE_FORMAT, Scene, Visible, bind, compute, create, dispatch,
     draw_fullscreen, whole,
 };
-use crate::field::{Pattern, Picture};
+use crate::field::{Method, Pattern, Picture};
 use crate::gpu::device::Device;
 use crate::gpu::{GpuError, Stage, View, shader::SHADE};
 use wgpu::BindingResource::{Sampler, TextureView};
@@ -50,13 +50,15 @@ impl PictureTexture {
                 extent(picture.size),
             );
         }
-        let edge = |half: f64| match half.is_finite() {
+        // Nothing is beyond the poles of a sphere.
+        let ends = matches!(view.field.method, Method::Sphere(_));
+        let edge = |half: f64, ends: bool| match half.is_finite() || ends {
             true => wgpu::AddressMode::ClampToEdge,
             false => wgpu::AddressMode::Repeat,
         };
         let sampler = device.device.create_sampler(&wgpu::SamplerDescriptor {
-            address_mode_u: edge(view.light().half[0]),
-            address_mode_v: edge(view.light().half[1]),
+            address_mode_u: edge(view.light().half[0], false),
+            address_mode_v: edge(view.light().half[1], ends),
             mag_filter: wgpu::FilterMode::Linear,
             min_filter: wgpu::FilterMode::Linear,
             mipmap_filter: wgpu::MipmapFilterMode::Linear,
