@@ -29,6 +29,8 @@ pub(super) enum Command {
     Verify(VerifyArgs),
     /// Find the points that mirror light points into the eye (physical reflection)
     Glints(GlintsArgs),
+    /// Find where the surface breaks: along creases, between patches, round extraordinary vertices
+    Quality(Box<super::quality::QualityArgs>),
     /// Say what a mesh is made of and what it will take
     Info(InfoArgs),
 }

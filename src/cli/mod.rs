@@ -10,6 +10,7 @@ mod glints;
 mod info;
 mod lines;
 mod patches;
+mod quality;
 mod render;
 mod rig;
 mod rows;
@@ -98,6 +99,7 @@ pub fn run() -> ExitCode {
         Command::Eval(args) => eval::run(&args),
         Command::Verify(args) => verify::run(&args),
         Command::Glints(args) => glints::run(&args),
+        Command::Quality(args) => quality::run(&args),
         Command::Info(args) => info::run(&args),
     };
     let (code, message) = match result {

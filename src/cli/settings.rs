@@ -75,8 +75,24 @@ impl CommandLine {
         }
     }
 
+    /// A pattern and its name.
+    pub(super) fn pattern(&mut self, pattern: &Pattern, name: &PatternName) {
+        match (pattern, name) {
+            (Pattern::Heat { range }, _) => self.flag("pattern", format_args!("heat:{},{}", range[0], range[1])),
+            // The folder is nobody's business.
+            (_, PatternName::File(path)) => self.flag("pattern", path.file_name().unwrap_or_default().display()),
+            (_, name) => self.flag("pattern", name),
+        }
+        match pattern {
+            Pattern::Stripes { width } | Pattern::Lattice { width } => self.flag("light-width", width),
+            Pattern::Circles { radius } => self.flag("light-width", 2.0 * radius),
+            Pattern::Band { radius } => self.flag("light-width", 2.0 * radius),
+            Pattern::Heat { .. } | Pattern::Picture(_) => {}
+        }
+    }
+
     /// The colours that are not the usual ones.
-    fn colours(&mut self, palette: Palette) {
+    pub(super) fn colours(&mut self, palette: Palette) {
         let [colours, usual] = [palette, Palette::default()].map(Colours::of);
         for (name, colour, usual) in [
             ("paint", colours.paint, usual.paint),
@@ -118,17 +134,7 @@ pub(super) fn made_by(args: &RenderArgs, mesh: u64, rig: &FittedRig, pattern: &P
     let mut line = CommandLine::new("render", args.mesh.as_deref());
     line.camera(&rig.camera);
     line.field(rig);
-    match (&view.pattern, pattern) {
-        (Pattern::Heat { range }, _) => line.flag("pattern", format_args!("heat:{},{}", range[0], range[1])),
-        (_, PatternName::File(path)) => line.flag("pattern", path.file_name().unwrap_or_default().display()),
-        (_, name) => line.flag("pattern", name),
-    }
-    match &view.pattern {
-        Pattern::Stripes { width } | Pattern::Lattice { width } => line.flag("light-width", width),
-        Pattern::Circles { radius } => line.flag("light-width", 2.0 * radius),
-        Pattern::Band { radius } => line.flag("light-width", 2.0 * radius),
-        Pattern::Heat { .. } | Pattern::Picture(_) => {}
-    }
+    line.pattern(&view.pattern, pattern);
     line.colours(rig.palette);
     line.flag("pipeline", value_name(&args.pipeline));
     if view.enlarge != 1.0 {

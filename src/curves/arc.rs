@@ -85,15 +85,14 @@ pub(super) struct Tracer<'a> {
 }
 
 impl Tracer<'_> {
-    /// F at parameters of the piece.
-    fn value(&self, at: [f64; 2]) -> Option<f64> {
-        Some(weighted(&self.contour.zero, &self.piece.functions(self.scene, at)?))
+    /// F and V at parameters of the piece.
+    fn values(&self, at: [f64; 2]) -> Option<[f64; 2]> {
+        let Contour { zero, valid } = self.contour;
+        let functions = self.piece.functions(self.scene, at)?;
+        Some([weighted(zero, &functions), valid.map_or(1.0, |weights| weighted(&weights, &functions))])
     }
 
-    fn node(&self, at: [f64; 2]) -> Node {
-        let valid = self.contour.valid.map_or(1.0, |weights| {
-            self.piece.functions(self.scene, at).map_or(-1.0, |functions| weighted(&weights, &functions))
-        });
+    fn node(&self, at: [f64; 2], valid: f64) -> Node {
         Node { at, position: self.piece.position(at), valid }
     }
 
@@ -105,11 +104,11 @@ impl Tracer<'_> {
         let crossings = self.crossings(&cell);
         // Two by the signs at the corners; rounding may leave a corner without any.
         let [from, to] = crossings[..] else { return };
-        let [first, last] = [from, to].map(|(_, at)| self.node(at));
+        let [(first, from), (last, to)] = [from, to];
         let mut nodes = vec![first];
         self.fill(&cell, axis, [first, last], 0, &mut nodes);
         nodes.push(last);
-        self.emit_valid(&cell, axis, &nodes, [from.0, to.0], out);
+        self.emit_valid(&cell, axis, &nodes, [from, to], out);
     }
 
     /// Chords through a cell that is not divided further. Where two lines meet in a saddle, its middle says which ends belong
@@ -121,7 +120,7 @@ impl Tracer<'_> {
             [a, b] => pairs.push([a, b]),
             // In the order left, right, low, high: each corner of the sign that the middle has not is cut off.
             [left, right, low, high] => {
-                let Some(middle) = self.value(cell.rect.at([0.5; 2])) else { return };
+                let Some([middle, _]) = self.values(cell.rect.at([0.5; 2])) else { return };
                 if (middle > 0.0) == (cell.sum.corners[0] > 0.0) {
                     pairs.extend([[left, high], [low, right]]);
                 } else {
@@ -131,15 +130,15 @@ impl Tracer<'_> {
             _ => {}
         }
         for [from, to] in pairs {
-            let nodes = [self.node(from.1), self.node(to.1)];
+            let nodes = [from.0, to.0];
             if nodes.iter().all(|node| node.valid > 0.0) {
-                out.push(self.arc(&nodes, [End::Side(from.0), End::Side(to.0)]));
+                out.push(self.arc(&nodes, [End::Side(from.1), End::Side(to.1)]));
             }
         }
     }
 
     /// Where the contour crosses the sides of a cell, at most once each: left, right, low, high.
-    fn crossings(&self, Cell { rect, sum, .. }: &Cell) -> Vec<(Side, [f64; 2])> {
+    fn crossings(&self, Cell { rect, sum, .. }: &Cell) -> Vec<(Node, Side)> {
         let sides = [(0, false, [0, 2]), (0, true, [1, 3]), (1, false, [0, 1]), (1, true, [2, 3])];
         let crossing = |(axis, end, [first, last]): (usize, bool, [usize; 2])| {
             let signs = [sum.corners[first], sum.corners[last]];
@@ -150,7 +149,7 @@ impl Tracer<'_> {
             let place = |along: f64| if axis == 0 { [constant, along] } else { [along, constant] };
             let range = [rect.low[1 - axis], rect.high[1 - axis]];
             let line = sum.line(1 - axis, if end { 1.0 } else { 0.0 });
-            let along = zero(|x| self.value(place(x)), range, signs[0] > 0.0, &line)?;
+            let (along, valid) = zero(|x| self.values(place(x)), range, signs[0] > 0.0, &line)?;
             let at = self.piece.to_patch(place(along));
             let side = Side {
                 axis,
@@ -159,7 +158,7 @@ impl Tracer<'_> {
                 above: !end,
                 length: (range[1] - range[0]) * self.piece.size,
             };
-            Some((side, place(along)))
+            Some((self.node(place(along), valid), side))
         };
         sides.into_iter().filter_map(crossing).collect()
     }
@@ -170,7 +169,8 @@ impl Tracer<'_> {
         let [low, high] = [rect.low[1 - axis], rect.high[1 - axis]];
         let line = sum.line(axis, (along - low) / (high - low));
         let range = [rect.low[axis], rect.high[axis]];
-        Some(self.node(place(zero(|x| self.value(place(x)), range, line.slope(0.5) < 0.0, &line)?)))
+        let (x, valid) = zero(|x| self.values(place(x)), range, line.slope(0.5) < 0.0, &line)?;
+        Some(self.node(place(x), valid))
     }
 
     /// What the models say of the arc at a part of the cell, 0 to 1, along the parameter that is not monotone.
@@ -256,14 +256,25 @@ impl Tracer<'_> {
         }
     }
 
-    /// The last node with V above 0 between one that has it and one that has not.
+    /// The last node with V above 0 between one that has it and one that has not, to a millionth of the tolerance: by secants, of
+    /// which an end that stays again counts for half as much (the Illinois method).
     fn last_valid(&self, cell: &Cell, axis: usize, [mut valid, mut other]: [Node; 2]) -> Node {
+        const CUT: f64 = 1e-6;
+        let [mut a, mut b] = [valid.valid, other.valid];
+        let mut was_valid = None;
         for _ in 0..60 {
-            let along = 0.5 * (valid.at[1 - axis] + other.at[1 - axis]);
-            match self.across(cell, axis, along) {
-                Some(node) if node.valid > 0.0 => valid = node,
-                Some(node) => other = node,
-                None => break,
+            let [from, to] = [valid, other].map(|node| node.at[1 - axis]);
+            if valid.position.distance(other.position) <= CUT * self.tolerance {
+                break;
+            }
+            let part = (a / (a - b)).clamp(1e-3, 0.999);
+            let Some(node) = self.across(cell, axis, from + part * (to - from)) else { break };
+            let is_valid = node.valid > 0.0;
+            let less = if was_valid == Some(is_valid) { 0.5 } else { 1.0 };
+            was_valid = Some(is_valid);
+            match is_valid {
+                true => (valid, a, b) = (node, node.valid, less * b),
+                false => (other, a, b) = (node, less * a, node.valid),
             }
         }
         valid
@@ -290,44 +301,47 @@ pub(super) fn distance(p: DVec3, a: DVec3, b: DVec3) -> f64 {
 /// Part of a range within which secants gain digits with every step.
 const NEAR: f64 = 1e-6;
 
-/// A zero of a function that is monotone on a range, to the last digits; `positive`: at the range's start it is above 0. From the zero of
-/// the polynomial that stands in for it by secants, which a tenth step or a third value finds; where they fail, by halves. `None`
-/// where the function is undefined on the way.
-fn zero(f: impl Fn(f64) -> Option<f64>, [mut low, mut high]: [f64; 2], positive: bool, line: &Line) -> Option<f64> {
+/// A zero of the first of two functions, which is monotone on a range, to the last digits, and the second one there; `positive`: at the
+/// range's start the first is above 0. From the zero of the polynomial that stands in for it by secants, which a tenth step or a third
+/// value finds; where they fail, by halves. `None` where the functions are undefined on the way.
+fn zero(
+    f: impl Fn(f64) -> Option<[f64; 2]>,
+    [mut low, mut high]: [f64; 2],
+    positive: bool,
+    line: &Line,
+) -> Option<(f64, f64)> {
     let width = high - low;
     let smallest = 2.0 * f64::EPSILON * high.abs().max(low.abs()).max(width);
     let start = line.zero();
     let slope = line.slope(start) / width;
     let mut x = low + start * width;
-    let mut value = f(x)?;
+    let [mut value, mut other] = f(x)?;
     let mut step = -value / slope;
     for _ in 0..100 {
-        if value == 0.0 || high - low <= smallest {
-            return Some(x);
+        if value == 0.0 || high - low <= smallest || step.abs() <= smallest {
+            break;
         }
         if (value > 0.0) == positive {
             low = x;
         } else {
             high = x;
         }
-        let is_last = step.abs() <= smallest;
         let mut next = x + step;
         if !(next > low && next < high) {
-            // The end itself may be the zero.
-            if is_last {
-                return Some(x);
-            }
             next = 0.5 * (low + high);
         }
-        let last = std::mem::replace(&mut x, next);
-        let new = f(x)?;
+        let [new, beside] = f(next)?;
         // So near, a step that gains nothing has met rounding.
-        if is_last || (new.abs() > 0.25 * value.abs() && step.abs() < NEAR * width) {
-            return Some(if new.abs() < value.abs() { x } else { last });
+        let is_rounding = new.abs() > 0.25 * value.abs() && step.abs() < NEAR * width;
+        if is_rounding && new.abs() >= value.abs() {
+            break;
         }
-        let secant = -new * (x - last) / (new - value);
-        value = new;
+        let secant = -new * (next - x) / (new - value);
+        (x, value, other) = (next, new, beside);
+        if is_rounding {
+            break;
+        }
         step = if secant.is_finite() { secant } else { 0.5 * (high - low) };
     }
-    Some(x)
+    Some((x, other))
 }

@@ -110,12 +110,14 @@ impl Divider<'_> {
     /// Divides a piece, all cells of a size before the smaller ones.
     fn piece(&mut self, piece: &Piece, model: &Result<Model, Undefined>, candidates: Vec<Candidate>) {
         let mut crowd = vec![0; self.wanted.len()];
-        let mut next = self.settled(piece, Rect::WHOLE, model, candidates, 0).into_iter().collect::<Vec<_>>();
+        let mut next = Vec::new();
+        if let Some((rect, candidates)) = self.settled(piece, Rect::WHOLE, model, candidates, 0) {
+            next.push((rect, self.models(piece, &rect, model, &candidates), candidates));
+        }
         for depth in 1..=DEEPEST {
             let mut cells = Vec::new();
-            for (rect, candidates) in next.drain(..) {
-                for quarter in rect.quarters() {
-                    let model = Model::new(&self.scene, piece, &quarter);
+            for (rect, models, candidates) in next.drain(..) {
+                for (quarter, model) in rect.quarters().into_iter().zip(models) {
                     if let Some((rect, candidates)) = self.settled(piece, quarter, &model, candidates.clone(), depth) {
                         cells.push((rect, candidates, model));
                     }
@@ -134,12 +136,32 @@ impl Divider<'_> {
                     is_kept
                 });
                 if !candidates.is_empty() {
-                    next.push((rect, candidates));
+                    next.push((rect, self.models(piece, &rect, &model, &candidates), candidates));
                 }
             }
             if next.is_empty() {
                 break;
             }
+        }
+    }
+
+    /// Models of the quarters of a cell: parts of the cell's own, where that is precise enough for the candidates.
+    fn models(
+        &self,
+        piece: &Piece,
+        rect: &Rect,
+        model: &Result<Model, Undefined>,
+        candidates: &[Candidate],
+    ) -> [Result<Model, Undefined>; 4] {
+        let is_precise = |candidate: &Candidate, model: &Model| {
+            let Contour { zero, valid } = &self.wanted[candidate.wanted].contour;
+            let is_known = |valid: Sum| valid.range()[0] > 0.0 || valid.is_precise();
+            model.sum(zero).is_precise() && valid.is_none_or(|valid| is_known(model.sum(&valid)))
+        };
+        let inherited = model.as_ref().ok().filter(|model| candidates.iter().all(|c| is_precise(c, model)));
+        match inherited.and_then(|model| model.quarters(&self.scene, piece, rect)) {
+            Some(models) => models.map(Ok),
+            None => rect.quarters().map(|quarter| Model::new(&self.scene, piece, &quarter)),
         }
     }
 

@@ -27,27 +27,26 @@ struct Pair {
     ends: [usize; 2],
 }
 
-/// Which ends are on one line of one patch: contour, patch, constant parameter and its value.
-type Line = (usize, usize, usize, u64);
+/// Which ends are on one line of one patch: patch, constant parameter and its value.
+type Line = (usize, usize, u64);
 
-/// Chains the arcs of all contours.
+/// Chains the arcs of a contour.
 pub(super) fn join(arcs: &[Arc], adjacency: &Adjacency, diagonal: f64) -> Vec<Chain> {
     let mut ends = Ends { arcs, mates: vec![None; 2 * arcs.len()] };
     let mut lines: HashMap<Line, Vec<usize>> = HashMap::new();
     for end in 0..2 * arcs.len() {
         if let Some(side) = ends.side(end) {
-            let arc = &arcs[end / 2];
-            lines.entry((arc.wanted, arc.patch, side.axis, side.constant.to_bits())).or_default().push(end);
+            lines.entry((arcs[end / 2].patch, side.axis, side.constant.to_bits())).or_default().push(end);
         }
     }
     let mut pairs = Vec::new();
-    for (&(wanted, patch, axis, constant), on_line) in &lines {
+    for (&(patch, axis, constant), on_line) in &lines {
         match edge(axis, f64::from_bits(constant)) {
             None => ends.inside(on_line, &mut pairs),
             Some(edge) => {
                 let others = |patch: usize, edge: u8| {
                     let (axis, constant) = line_of(edge);
-                    lines.get(&(wanted, patch, axis, constant.to_bits())).map_or(&[][..], Vec::as_slice)
+                    lines.get(&(patch, axis, constant.to_bits())).map_or(&[][..], Vec::as_slice)
                 };
                 ends.across(patch, edge, on_line, adjacency, others, SAME_PLACE * diagonal, &mut pairs);
             }
@@ -141,10 +140,10 @@ impl Ends<'_> {
     /// Pairs of what is left at one place: round an extraordinary vertex that no level resolves.
     fn left_over(&self, same: f64) -> Vec<Pair> {
         let cell = |p: DVec3| (p / (4.0 * same)).round().as_i64vec3();
-        let mut at: HashMap<(usize, glam::I64Vec3), Vec<usize>> = HashMap::new();
+        let mut at: HashMap<glam::I64Vec3, Vec<usize>> = HashMap::new();
         let mut pairs = Vec::new();
         for end in (0..self.mates.len()).filter(|&end| self.mates[end].is_none() && self.side(end).is_some()) {
-            let here = at.entry((self.arcs[end / 2].wanted, cell(self.position(end)))).or_default();
+            let here = at.entry(cell(self.position(end))).or_default();
             for &other in here.iter() {
                 let distance = self.position(end).distance(self.position(other));
                 if distance <= same {

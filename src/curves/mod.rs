@@ -21,13 +21,14 @@ mod occluder;
 mod piece;
 mod visible;
 
-pub use visible::visible;
+pub use visible::{Look, visible};
 
 use crate::field::{Camera, Contour, Field};
 use crate::stam::LimitSurface;
 use arc::Arc;
 use divide::Wanted;
 use glam::DVec3;
+use join::Chain;
 use piece::Scene;
 use rayon::prelude::*;
 
@@ -90,13 +91,21 @@ pub fn trace(
         .into_par_iter()
         .flat_map_iter(|patch| divide::divide(scene, patch, &wanted, tolerance))
         .collect();
-    let mut chains = join::join(&arcs, &surface.adjacency(), surface.diagonal());
-    chains.sort_by_key(|chain| {
-        let first = chain.arcs[0].0;
-        (arcs[first].wanted, first)
+    let mut families: Vec<Vec<Arc>> = wanted.iter().map(|_| Vec::new()).collect();
+    arcs.into_iter().for_each(|arc| families[arc.wanted].push(arc));
+    let adjacency = surface.adjacency();
+    let curves = families.par_iter().zip(&wanted).flat_map_iter(|(arcs, wanted)| {
+        let mut chains = join::join(arcs, &adjacency, surface.diagonal());
+        chains.sort_by_key(|chain| chain.arcs[0].0);
+        let curves = chains.into_iter().map(|chain| Curve::new(surface, wanted, arcs, &chain));
+        curves.filter(|curve| curve.points.len() > 1 && curve.length() > SHORTEST * tolerance)
     });
-    let curves = chains.iter().map(|chain| {
-        let Wanted { light, value, .. } = wanted[arcs[chain.arcs[0].0].wanted];
+    curves.collect()
+}
+
+impl Curve {
+    fn new(surface: &LimitSurface, wanted: &Wanted, arcs: &[Arc], chain: &Chain) -> Curve {
+        let Wanted { light, value, .. } = *wanted;
         let mut curve = Curve { value, light, closed: chain.closed, points: Vec::new(), places: Vec::new() };
         for &(arc, turned) in &chain.arcs {
             curve.append(surface, &arcs[arc], turned);
@@ -107,11 +116,8 @@ pub fn trace(
             curve.places.pop();
         }
         curve
-    });
-    curves.filter(|curve| curve.points.len() > 1 && curve.length() > SHORTEST * tolerance).collect()
-}
+    }
 
-impl Curve {
     fn append(&mut self, surface: &LimitSurface, arc: &Arc, turned: bool) {
         let patch = &surface.patches()[arc.patch];
         // Where arcs are joined they share a point.

@@ -74,14 +74,17 @@ impl Model {
     pub fn new(scene: &Scene, piece: &Piece, rect: &Rect) -> Result<Model, Undefined> {
         let mut values = [[0.0; N * N]; 4];
         let (mut undefined, mut size) = (0, [0.0f64; 4]);
-        for k in 0..N * N {
-            let Some(functions) = piece.functions(scene, rect.at([NODES[k % N], NODES[k / N]])) else {
-                undefined += 1;
-                continue;
-            };
-            for c in 0..4 {
-                values[c][k] = functions[c];
-                size[c] = size[c].max(functions[c].abs());
+        for (i, u) in NODES.into_iter().enumerate() {
+            let line = piece.line(scene, rect.at([u, 0.0])[0]);
+            for (j, v) in NODES.into_iter().enumerate() {
+                let Some(functions) = piece.functions_on(scene, &line, rect.at([0.0, v])[1]) else {
+                    undefined += 1;
+                    continue;
+                };
+                for c in 0..4 {
+                    values[c][j * N + i] = functions[c];
+                    size[c] = size[c].max(functions[c].abs());
+                }
             }
         }
         match undefined {
@@ -102,6 +105,30 @@ impl Model {
         // Rounding is no news.
         let error = std::array::from_fn(|c| SAFETY * error[c] + 8.0 * f64::EPSILON * size[c]);
         Ok(Model { bernstein, error, corners })
+    }
+
+    /// The same polynomials on the quarters of the rectangle, in the order of [`Rect::quarters`]; `None` where a function is undefined at
+    /// one of their corners.
+    pub fn quarters(&self, scene: &Scene, piece: &Piece, rect: &Rect) -> Option<[Model; 4]> {
+        let mut corners = [[[0.0; 4]; 3]; 3];
+        for (i, u) in [0.0, 0.5, 1.0].into_iter().enumerate() {
+            let line = piece.line(scene, rect.at([u, 0.0])[0]);
+            for (j, v) in [0.0, 0.5, 1.0].into_iter().enumerate() {
+                corners[j][i] = match i % 2 + j % 2 {
+                    0 => self.corners[j + i / 2],
+                    _ => piece.functions_on(scene, &line, rect.at([0.0, v])[1])?,
+                };
+            }
+        }
+        let halves = self.bernstein.each_ref().map(|of| halves(of, N, 1).map(|half| self::halves(&half, 1, N)));
+        Some(std::array::from_fn(|k| {
+            let (i, j) = (k % 2, k / 2);
+            Model {
+                bernstein: std::array::from_fn(|c| halves[c][i][j]),
+                error: self.error,
+                corners: [corners[j][i], corners[j][i + 1], corners[j + 1][i], corners[j + 1][i + 1]],
+            }
+        }))
     }
 
     /// A weighted sum of the functions.
@@ -146,6 +173,21 @@ impl Sum {
         self.spread() <= POOR * self.error
     }
 
+    /// Whether the error is so small that it does not matter on quarters either. Where the contour nearly is a side it does: there, only
+    /// rounding settles what is on which.
+    pub fn is_precise(&self) -> bool {
+        const PRECISE: f64 = 4096.0;
+        const NEAR: f64 = 1.0 / 64.0;
+        let spread = self.spread();
+        let is_near = |(axis, end): (usize, usize)| (0..N).all(|k| self.on_side(axis, end, k).abs() <= NEAR * spread);
+        spread >= PRECISE * self.error && ![(0, 0), (0, N - 1), (1, 0), (1, N - 1)].into_iter().any(is_near)
+    }
+
+    /// Coefficient k of the side where `axis` is constant, at its coefficient `end`.
+    fn on_side(&self, axis: usize, end: usize, k: usize) -> f64 {
+        self.coefficients[if axis == 0 { k * N + end } else { end * N + k }]
+    }
+
     /// Whether it grows or shrinks everywhere along an axis.
     pub fn is_monotone(&self, axis: usize) -> bool {
         let step = [1, N][axis];
@@ -159,10 +201,7 @@ impl Sum {
     /// Whether it has at most one zero on the side of the rectangle where `axis` is constant, at its end or its start, which
     /// the signs at the corners show.
     pub fn is_simple_on_side(&self, axis: usize, end: bool) -> bool {
-        let of = |k: usize| {
-            let fixed = if end { N - 1 } else { 0 };
-            self.coefficients[if axis == 0 { k * N + fixed } else { fixed * N + k }]
-        };
+        let of = |k: usize| self.on_side(axis, if end { N - 1 } else { 0 }, k);
         let [low, high] = range((0..N).map(of), self.error);
         // With a sign; or on the contour but for rounding, where signs at the corners are as good as any.
         let is_rounding = self.error < ROUNDING * self.spread() && low.abs().max(high) <= 4.0 * self.error;
@@ -315,6 +354,24 @@ fn to_bernstein(values: &Coefficients) -> Coefficients {
     out
 }
 
+/// Both halves of polynomials of which coefficients `step` apart belong together, each of the N lines starting `line` apart
+/// (de Casteljau).
+fn halves(whole: &Coefficients, line: usize, step: usize) -> [Coefficients; 2] {
+    let mut halves = [*whole; 2];
+    for start in (0..N).map(|k| k * line) {
+        let at = |k: usize| start + k * step;
+        for round in 1..N {
+            for k in (round..N).rev() {
+                halves[0][at(k)] = 0.5 * (halves[0][at(k - 1)] + halves[0][at(k)]);
+            }
+            for k in 0..N - round {
+                halves[1][at(k)] = 0.5 * (halves[1][at(k)] + halves[1][at(k + 1)]);
+            }
+        }
+    }
+    halves
+}
+
 fn evaluate(bernstein: &Coefficients, at: [f64; 2]) -> f64 {
     let [u, v] = at.map(basis);
     (0..N * N).map(|k| u[k % N] * v[k / N] * bernstein[k]).sum()
@@ -331,6 +388,11 @@ mod tests {
         let bernstein = to_bernstein(&values);
         for at in TRIED.into_iter().chain([[0.0, 1.0], [1.0, 0.3]]) {
             assert!((evaluate(&bernstein, at) - f(at)).abs() < 1e-14, "{at:?}");
+            for k in 0..4 {
+                let quarter = &halves(&halves(&bernstein, N, 1)[k % 2], 1, N)[k / 2];
+                let of_whole = [0.5 * (at[0] + (k % 2) as f64), 0.5 * (at[1] + (k / 2) as f64)];
+                assert!((evaluate(quarter, at) - f(of_whole)).abs() < 1e-14, "{at:?} of quarter {k}");
+            }
         }
     }
 }

@@ -94,8 +94,8 @@ impl Piece {
     /// Position at parameters of the piece, each 0 to 1.
     pub fn position(&self, [s, t]: [f64; 2]) -> DVec3 {
         let (bs, bt) = (basis(s)[0], basis(t)[0]);
-        let row = |j: usize| (0..4).map(|i| bs[i] * self.net[4 * j + i]).sum::<DVec3>();
-        self.origin + self.scale * (0..4).map(|j| bt[j] * row(j)).sum::<DVec3>()
+        let row = |j: usize| weighted(&bs, [0, 1, 2, 3].map(|i| self.net[4 * j + i]));
+        self.origin + self.scale * weighted(&bt, [0, 1, 2, 3].map(row))
     }
 
     /// Whether rounding leaves ten digits of a curvature: it is a second difference of points over the square of their distance.
@@ -109,36 +109,42 @@ impl Piece {
     }
 
     /// The functions at parameters of the piece; `None` where they are undefined.
-    pub fn functions(&self, scene: &Scene, at @ [s, t]: [f64; 2]) -> Option<Functions> {
+    pub fn functions(&self, scene: &Scene, [s, t]: [f64; 2]) -> Option<Functions> {
+        self.functions_on(scene, &self.line(scene, s), t)
+    }
+
+    /// The line of the piece at a value of its first parameter.
+    pub fn line(&self, scene: &Scene, s: f64) -> Line {
         let second = scene.field.method.reads_curvature();
-        let ([b, d, c], [e, f, g]) = (basis(s), basis(t));
-        let mut rows = [[DVec3::ZERO; 3]; 4];
-        for (j, row) in rows.iter_mut().enumerate() {
-            for i in 0..4 {
-                let p = self.net[4 * j + i];
-                row[0] += b[i] * p;
-                row[1] += d[i] * p;
-                if second {
-                    row[2] += c[i] * p;
-                }
-            }
-        }
-        let sum = |weights: &[f64; 4], k: usize| (0..4).map(|j| weights[j] * rows[j][k]).sum::<DVec3>();
+        let [b, d, c] = basis(s);
+        let points = std::array::from_fn(|j| {
+            let sum = |weights: &[f64; 4]| weighted(weights, [0, 1, 2, 3].map(|i| self.net[4 * j + i]));
+            [sum(&b), sum(&d), if second { sum(&c) } else { DVec3::ZERO }]
+        });
+        Line { s, points }
+    }
+
+    /// The functions on a line, at a value of the second parameter.
+    pub fn functions_on(&self, scene: &Scene, line: &Line, t: f64) -> Option<Functions> {
+        let second = scene.field.method.reads_curvature();
+        let [e, f, g] = basis(t);
+        let sum = |weights: &[f64; 4], k: usize| weighted(weights, line.points.each_ref().map(|points| points[k]));
         let (du, dv) = (sum(&e, 1), sum(&f, 0));
+        let across = du.cross(dv);
         // Where derivatives vanish, the reference knows the limit of the normals; where they are parallel the patch is folded, and the
         // normal is rounding.
-        let [long, wide] = [du, dv].map(DVec3::length_squared);
+        let [long, wide, area] = [du, dv, across].map(DVec3::length_squared);
         if long.min(wide) <= VANISHING * long.max(wide) {
-            return scene.functions(self.patch, self.to_patch(at));
+            return scene.functions(self.patch, self.to_patch([line.s, t]));
         }
         let folded = if second { FOLDED_CURVATURE } else { FOLDED };
-        if du.cross(dv).length_squared() <= folded * folded * long * wide {
+        if area <= folded * folded * long * wide {
             return None;
         }
         // By the parameters of the piece and in its own scale: neither turns the normal.
-        let jet = Jet { normal: du.cross(dv).normalize(), ..Jet::new(self.origin + self.scale * sum(&e, 0), du, dv) };
+        let first = Jet { position: self.origin + self.scale * sum(&e, 0), du, dv, normal: across / area.sqrt() };
         let curvature = second.then(|| {
-            let of_net = Jet2 { first: jet, duu: sum(&e, 2), duv: sum(&f, 1), dvv: sum(&g, 0) };
+            let of_net = Jet2 { first, duu: sum(&e, 2), duv: sum(&f, 1), dvv: sum(&g, 0) };
             let curvature = of_net.curvature()?;
             let curvature = Curvature {
                 gaussian: curvature.gaussian / (self.scale * self.scale),
@@ -147,8 +153,20 @@ impl Piece {
             };
             self.is_known(&curvature, scene.field).then_some(curvature)
         });
-        scene.of(jet, curvature.flatten())
+        scene.of(first, curvature.flatten())
     }
+}
+
+/// A line of a piece: what is the same for all its points.
+#[derive(Debug)]
+pub(super) struct Line {
+    s: f64,
+    /// B-spline points along the line, of the position and its first and second derivatives across it.
+    points: [[DVec3; 3]; 4],
+}
+
+fn weighted(weights: &[f64; 4], points: [DVec3; 4]) -> DVec3 {
+    (weights[0] * points[0] + weights[1] * points[1]) + (weights[2] * points[2] + weights[3] * points[3])
 }
 
 /// Values, first and second derivatives of the four uniform cubic B-splines.

@@ -27,19 +27,30 @@ struct At {
 /// Surfaces hide what is behind them from both sides; what is nearer behind them than 3e-4 diagonals they do not hide. The picture's
 /// borders do not count, but points behind the eye are not seen.
 pub fn visible(surface: &LimitSurface, camera: &Camera, curves: &[Curve]) -> Vec<Curve> {
-    let occluder = Occluder::new(surface);
-    let look = Look { occluder: &occluder, camera, clear: CLEAR * surface.diagonal() };
-    curves.par_iter().flat_map_iter(|curve| look.parts(curve)).collect()
+    Look::new(surface, camera).visible(curves)
 }
 
-struct Look<'a> {
-    occluder: &'a Occluder,
+/// A surface as what hides things from a camera.
+#[derive(Debug)]
+pub struct Look<'a> {
+    occluder: Occluder,
     camera: &'a Camera,
     clear: f64,
 }
 
-impl Look<'_> {
-    fn sees(&self, point: DVec3) -> bool {
+impl<'a> Look<'a> {
+    /// Of a camera at a surface.
+    pub fn new(surface: &LimitSurface, camera: &'a Camera) -> Look<'a> {
+        Look { occluder: Occluder::new(surface), camera, clear: CLEAR * surface.diagonal() }
+    }
+
+    /// The parts of curves that are seen: [`visible`].
+    pub fn visible(&self, curves: &[Curve]) -> Vec<Curve> {
+        curves.par_iter().flat_map_iter(|curve| self.parts(curve)).collect()
+    }
+
+    /// Whether a point of the surface is in front of everything else of it: see [`visible`].
+    pub fn sees(&self, point: DVec3) -> bool {
         let camera = self.camera;
         let forward = camera.axes().forward;
         if (point - camera.eye).dot(forward) <= 0.0 {

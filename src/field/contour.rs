@@ -141,9 +141,9 @@ impl Field {
     }
 }
 
-/// Direction of the mirrored line of sight, of unit length.
+/// Direction of the mirrored line of sight, of unit length as the normal is.
 fn ray(normal: DVec3, sight: DVec3) -> Option<DVec3> {
-    reflection_direction(normal, sight.try_normalize()?).try_normalize()
+    Some(reflection_direction(normal, sight.try_normalize()?))
 }
 
 /// Homogeneous coordinates (x w, y w, w) of the point of the light plane on a line (Ulmet 2003, eq. 5.9, times s . k), and V: above

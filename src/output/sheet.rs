@@ -15,7 +15,7 @@ pub struct Panel {
 }
 
 const PAPER: [u8; 4] = [255; 4];
-const INK: [u8; 4] = [32, 34, 38, 255];
+pub(super) const INK: [u8; 4] = [32, 34, 38, 255];
 /// Pixels round each picture.
 const MARGIN: usize = 12;
 const LINE: usize = 16;
@@ -68,6 +68,26 @@ pub fn draw_legend(size: [u32; 2], rgba8: &mut Vec<u8>, scale: &Scale, what: &st
     *rgba8 = page.pixels.into_flattened();
 }
 
+/// Writes one line into pixels in rows of `width`; what is outside is left out.
+pub(super) fn write_text(pixels: &mut [[u8; 4]], width: usize, [x, y]: [usize; 2], text: &str, ink: [u8; 4]) {
+    let advance = get_raster_width(FontWeight::Regular, RasterHeight::Size16);
+    for (i, c) in text.chars().enumerate() {
+        let Some(glyph) = get_raster(c, FontWeight::Regular, RasterHeight::Size16) else { continue };
+        for (row, line) in glyph.rows().enumerate() {
+            for (column, &cover) in line.iter().enumerate() {
+                let across = x + i * advance + column;
+                let Some(pixel) = pixels.get_mut((y + row) * width + across).filter(|_| across < width) else {
+                    continue;
+                };
+                for (channel, ink) in pixel.iter_mut().zip(ink) {
+                    let mixed = u16::from(*channel) * (255 - u16::from(cover)) + u16::from(ink) * u16::from(cover);
+                    *channel = (mixed / 255) as u8;
+                }
+            }
+        }
+    }
+}
+
 struct Page {
     width: usize,
     pixels: Vec<[u8; 4]>,
@@ -83,20 +103,10 @@ impl Page {
     }
 
     /// Writes one line, at most `width` pixels of it.
-    fn text(&mut self, [x, y]: [usize; 2], width: usize, text: &str) {
+    fn text(&mut self, at: [usize; 2], width: usize, text: &str) {
         let advance = get_raster_width(FontWeight::Regular, RasterHeight::Size16);
-        for (i, c) in text.chars().enumerate().take(width / advance) {
-            let Some(glyph) = get_raster(c, FontWeight::Regular, RasterHeight::Size16) else { continue };
-            for (row, line) in glyph.rows().enumerate() {
-                for (column, &cover) in line.iter().enumerate() {
-                    let pixel = &mut self.pixels[(y + row) * self.width + x + i * advance + column];
-                    for (channel, ink) in pixel.iter_mut().zip(INK) {
-                        let mixed = u16::from(*channel) * (255 - u16::from(cover)) + u16::from(ink) * u16::from(cover);
-                        *channel = (mixed / 255) as u8;
-                    }
-                }
-            }
-        }
+        let fitting: String = text.chars().take(width / advance).collect();
+        write_text(&mut self.pixels, self.width, at, &fitting, INK);
     }
 
     /// A bar with the colours of a scale, its ticks, and what it measures.

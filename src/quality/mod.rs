@@ -6,7 +6,7 @@
 //! are C2 but along infinitely sharp edges and at extraordinary vertices, where curvature has no limit in general: it depends on
 //! the direction, and for valences above 4 it grows without bound (Doo & Sabin 1978; Peters & Reif 2008).
 //!
-//! Practice: [`Quality::measure`] evaluates both sides of every joint of a [`LimitSurface`] and rings round its vertices.
+//! Practice: [`Quality::measure`] evaluates both sides of every joint of a [`LimitSurface`] and rings round its vertices; [`Quality::ranked`] lists it.
 //! [`Continuity`] and [`LineBreak`] compare two jets, wherever they come from. docs/QUALITY.md has the definitions.
 
 mod chain;
@@ -18,6 +18,7 @@ mod form;
 mod joint;
 mod limits;
 mod line_break;
+mod ranking;
 mod slope;
 mod vertex;
 
@@ -30,6 +31,7 @@ pub use form::Form;
 pub use joint::Piece;
 pub use limits::{Break, Limits};
 pub use line_break::LineBreak;
+pub use ranking::{Kind, Ranked, Subject};
 pub use vertex::{RINGS, Ring, Vertex, Wedge, rings};
 
 use crate::field::{Camera, Field};

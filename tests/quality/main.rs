@@ -3,6 +3,9 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod askew;
+mod command;
+mod lines;
 mod revolution;
 mod surfaces;
 mod vertices;

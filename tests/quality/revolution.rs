@@ -7,12 +7,20 @@ use glam::{DVec3, dvec3};
 
 /// r(s) = r0 + a s + b s^2 + c s^3, z = s.
 #[derive(Debug, Clone, Copy)]
-struct Profile([f64; 4]);
+pub struct Profile(pub [f64; 4]);
 
 impl Profile {
+    /// Position and unit normal, which points inwards, at (s, turn).
+    pub fn point(&self, s: f64, turn: f64) -> (DVec3, DVec3) {
+        let [r, a, b, c] = self.0;
+        let (out, round) = (dvec3(turn.cos(), turn.sin(), 0.0), dvec3(-turn.sin(), turn.cos(), 0.0));
+        let (radius, slope) = (r + s * (a + s * (b + s * c)), a + s * (2.0 * b + s * 3.0 * c));
+        (out * radius + DVec3::Z * s, (out * slope + DVec3::Z).cross(round).normalize())
+    }
+
     /// By s and the angle, at the joint s = 0; `speed`: how fast its parameter runs along s, so that the two sides have little in
     /// common but the surface.
-    fn jet(&self, turn: f64, speed: f64) -> Jet2 {
+    pub fn jet(&self, turn: f64, speed: f64) -> Jet2 {
         let [r, a, b, _] = self.0;
         let (out, round) = (dvec3(turn.cos(), turn.sin(), 0.0), dvec3(-turn.sin(), turn.cos(), 0.0));
         let first = Jet::new(out * r, speed * (out * a + DVec3::Z), round * r);
@@ -20,34 +28,34 @@ impl Profile {
     }
 
     /// Curvature along the profile at the joint; the normal du x dv points inwards.
-    fn curvature(&self) -> f64 {
+    pub fn curvature(&self) -> f64 {
         let [_, a, b, _] = self.0;
         -2.0 * b / (1.0 + a * a).powf(1.5)
     }
 }
 
-const BELOW: Profile = Profile([1.3, 0.4, -0.5, 0.2]);
+pub const BELOW: Profile = Profile([1.3, 0.4, -0.5, 0.2]);
 /// The same curvature and another third derivative.
-const C2: Profile = Profile([1.3, 0.4, -0.5, -0.9]);
-const C1: Profile = Profile([1.3, 0.4, 0.15, -0.9]);
-const CORNER: Profile = Profile([1.3, 0.55, -0.5, 0.2]);
+pub const C2: Profile = Profile([1.3, 0.4, -0.5, -0.9]);
+pub const C1: Profile = Profile([1.3, 0.4, 0.15, -0.9]);
+pub const CORNER: Profile = Profile([1.3, 0.55, -0.5, 0.2]);
 
-fn camera() -> Camera {
+pub fn camera() -> Camera {
     let points = [dvec3(-1.5, -1.5, -1.0), dvec3(1.5, 1.5, 1.0)];
     Camera::fit(&points, [400, 300], DVec3::Z, dvec3(0.6, -0.7, 0.3), 26.0)
 }
 
 /// Angles of points of the joint.
-fn turns() -> impl Iterator<Item = f64> {
+pub fn turns() -> impl Iterator<Item = f64> {
     (0..40).map(|i| -1.6 + 0.05 * f64::from(i))
 }
 
-fn sides(above: &Profile, turn: f64) -> [Jet2; 2] {
+pub fn sides(above: &Profile, turn: f64) -> [Jet2; 2] {
     [BELOW.jet(turn, 1.0), above.jet(turn, 2.5)]
 }
 
 /// The joint runs along v. Both sides are evaluated in a handful of operations.
-const ROUNDING: [f64; 2] = [1e-14; 2];
+pub const ROUNDING: [f64; 2] = [1e-14; 2];
 
 #[test]
 fn continuity_is_what_the_profiles_say() {

@@ -1,0 +1,261 @@
+//! `quality`: where the surface breaks, the worst first.
+
+mod picture;
+mod record;
+mod table;
+
+use super::account::Account;
+use super::args::size;
+use super::field::{ColourArgs, FieldArgs, PatternArgs};
+use super::rig::{RigArgs, positive};
+use super::settings::{CommandLine, mesh_digest};
+use super::{Failure, load, progress, write_out};
+use crate::field::{Field, Pattern, Scout};
+use crate::gpu::View;
+use crate::mesh::SubdivMesh;
+use crate::output::check_writable;
+use crate::quality::{FeatureKind, Kind, Limits, Quality, Ranked, Reading};
+use crate::rig::{CameraRig, FittedRig, PatternName, PatternRig, Rig};
+use crate::stam::LimitSurface;
+use clap::{Args, ValueEnum};
+use picture::Picture;
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+pub(super) struct QualityArgs {
+    /// Control mesh (.obj)
+    mesh: Option<PathBuf>,
+    /// Picture to write (.png): the field, creases and vertices coloured by how far they exceed their limits, the worst numbered
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Write everything that was measured as JSON (docs/QUALITY.md)
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// How many of the worst are listed, and numbered in the picture
+    #[arg(long, value_name = "N", default_value_t = 20)]
+    count: usize,
+    /// Largest gap that is no break (G0), world units; millimetres with --mm-per-unit
+    #[arg(long, value_name = "D", default_value_t = 0.001, value_parser = limit, allow_negative_numbers = true)]
+    gap: f64,
+    /// Largest angle between tangent planes that is no break (G1), degrees
+    #[arg(long, value_name = "DEG", default_value_t = 0.5, value_parser = limit, allow_negative_numbers = true)]
+    angle: f64,
+    /// Largest difference in curvature that is no break (G2): 2 |k1 - k2| / (|k1| + |k2|), percent, 0 to 200
+    #[arg(long, value_name = "PERCENT", default_value_t = 2.0, value_parser = limit, allow_negative_numbers = true)]
+    curvature: f64,
+    /// Millimetres that a world unit takes: gaps are in millimetres then
+    #[arg(long, value_name = "MM", value_parser = positive, allow_negative_numbers = true)]
+    mm_per_unit: Option<f64>,
+    /// What is measured but neither judged nor listed, for breaks that are meant
+    #[arg(long, value_name = "KIND,...", value_enum, value_delimiter = ',')]
+    ignore: Vec<Ignored>,
+    /// Width and height of the picture in pixels, legend excluded [default: 1024x1024]
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    size: Option<[u32; 2]>,
+    #[command(flatten)]
+    field: FieldArgs,
+    #[command(flatten)]
+    pattern: PatternArgs,
+    #[command(flatten)]
+    colours: ColourArgs,
+    #[command(flatten)]
+    rig: RigArgs,
+    /// Print how long each step took
+    #[arg(long)]
+    timings: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, ValueEnum)]
+enum Ignored {
+    /// Infinitely sharp edges
+    Creases,
+    /// Creases of finite sharpness
+    SemiSharp,
+    /// Lines inside the smooth surface
+    Smooth,
+    /// Extraordinary vertices, those on creases too
+    Vertices,
+}
+
+impl Ignored {
+    fn kind(self) -> Kind {
+        match self {
+            Ignored::Creases => Kind::Feature(FeatureKind::Crease),
+            Ignored::SemiSharp => Kind::Feature(FeatureKind::SemiSharp),
+            Ignored::Smooth => Kind::Feature(FeatureKind::Smooth),
+            Ignored::Vertices => Kind::Vertex,
+        }
+    }
+
+    fn name(self) -> String {
+        self.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
+    }
+}
+
+fn limit(text: &str) -> Result<f64, String> {
+    let limit = text.parse().ok().filter(|x: &f64| *x >= 0.0 && x.is_finite());
+    limit.ok_or_else(|| "give a number, 0 or above".to_owned())
+}
+
+/// A surface, judged.
+struct Verdict<'a> {
+    mesh: &'a SubdivMesh,
+    field: &'a Field,
+    quality: &'a Quality,
+    /// The worst first; those that are ignored too.
+    ranked: Vec<Ranked<'a>>,
+    ignored: Vec<Ignored>,
+    /// As asked for.
+    limits: AskedLimits,
+    made_by: String,
+}
+
+/// Limits in the units of the command line.
+#[derive(Debug, Clone, Copy)]
+struct AskedLimits {
+    gap: f64,
+    angle_deg: f64,
+    percent: f64,
+    mm_per_unit: Option<f64>,
+}
+
+impl AskedLimits {
+    /// What a world unit is in the unit of gaps.
+    fn gap_unit(&self) -> f64 {
+        self.mm_per_unit.unwrap_or(1.0)
+    }
+
+    fn unit(&self) -> &'static str {
+        if self.mm_per_unit.is_some() { "mm" } else { "units" }
+    }
+
+    fn limits(&self) -> Limits {
+        Limits { gap: self.gap / self.gap_unit(), angle_deg: self.angle_deg, difference: self.percent / 100.0 }
+    }
+}
+
+impl Verdict<'_> {
+    fn is_ignored(&self, ranked: &Ranked<'_>) -> bool {
+        self.ignored.iter().any(|ignored| ignored.kind() == ranked.kind())
+    }
+
+    /// Those that are judged, the worst first.
+    fn judged(&self) -> impl Iterator<Item = &Ranked<'_>> {
+        self.ranked.iter().filter(|ranked| !self.is_ignored(ranked))
+    }
+
+    fn over(&self) -> usize {
+        self.judged().filter(|ranked| ranked.is_over()).count()
+    }
+}
+
+pub(super) fn run(args: &QualityArgs) -> Result<(), Failure> {
+    let mut account = Account::default();
+    args.rig.check()?;
+    args.check_files()?;
+    let rig = args.rig()?;
+    let pattern = rig.pattern.read(&rig.method()).map_err(Failure::Bad)?;
+    let bar = progress("measuring".to_owned());
+    let mesh = account.time("read", || load(args.mesh.as_deref()))?;
+    let surface =
+        account.time("patches and classes", || LimitSurface::new(&mesh)).map_err(|e| Failure::of(&mesh, e))?;
+    let scout = account.time("fit", || Scout::new(&surface)).ok_or_else(|| {
+        let what = "no face has a limit surface (holes, or boundary rule none); nothing to measure";
+        Failure::Bad(format!("{}: {what}", mesh.name))
+    })?;
+    let fitted = args.rig.fit(&rig, &scout, args.mesh.is_none())?;
+    let (camera, field) = (fitted.camera, fitted.field());
+    let pattern = PatternRig::fitted(pattern, &scout, &fitted);
+    let name = rig.pattern.name_for(&fitted.method);
+
+    let asked =
+        AskedLimits { gap: args.gap, angle_deg: args.angle, percent: args.curvature, mm_per_unit: args.mm_per_unit };
+    let limits = asked.limits();
+    let reading = Reading { field: &field, camera: &camera };
+    let quality = account.time("measure", || Quality::measure(&mesh, &surface, Some(reading), &limits));
+    let mut ignored = args.ignore.clone();
+    ignored.sort_unstable();
+    ignored.dedup();
+    let mut verdict = Verdict {
+        mesh: &mesh,
+        field: &field,
+        quality: &quality,
+        ranked: quality.ranked(&limits),
+        ignored,
+        limits: asked,
+        made_by: String::new(),
+    };
+    verdict.made_by = args.made_by(&verdict, &fitted, (&pattern, &name));
+    if let Some(path) = &args.output {
+        let mut view = View::new(camera, field.light);
+        view.field = field.clone();
+        view.pattern = pattern.clone();
+        view.palette = fitted.palette;
+        let picture = Picture { surface: &surface, view: &view, count: args.count };
+        picture.draw(path, &verdict, &mut account)?;
+    }
+    if let Some(path) = &args.json {
+        let text = account.time("write", || record::json(&verdict)).map_err(std::io::Error::from)?;
+        write_out(Some(path), &text)?;
+    }
+    args.rig.save(&fitted, PatternRig::of(name, &pattern))?;
+    bar.finish_and_clear();
+    write_out(None, table::text(&verdict, args.count).as_bytes())?;
+    if args.timings {
+        account.say_steps();
+    }
+    if verdict.over() > 0 { Err(Failure::Check) } else { Ok(()) }
+}
+
+impl QualityArgs {
+    /// Refuses files that could not be written, before the work.
+    fn check_files(&self) -> Result<(), Failure> {
+        if let Some(path) = &self.output {
+            if !path.extension().is_some_and(|e| e.eq_ignore_ascii_case("png")) {
+                let what = "not a picture that we write; choose a name that ends in .png";
+                return Err(Failure::Bad(format!("{}: {what}", path.display())));
+            }
+            if self.json.as_ref() == Some(path) {
+                let what = "--json would overwrite the picture; choose another name";
+                return Err(Failure::Bad(format!("{}: {what}", path.display())));
+            }
+        }
+        for path in [&self.output, &self.json].into_iter().flatten() {
+            check_writable(path)?;
+            self.rig.check_apart(path)?;
+        }
+        Ok(())
+    }
+
+    /// What is said of the picture.
+    fn rig(&self) -> Result<Rig, Failure> {
+        self.rig.rig(Rig {
+            field: self.field.method.clone(),
+            camera: CameraRig { size: self.size, ..CameraRig::default() },
+            pattern: self.pattern.rig()?,
+            colours: self.colours.rig(),
+            ..Rig::default()
+        })
+    }
+
+    /// The command that makes the same files again.
+    fn made_by(&self, verdict: &Verdict<'_>, rig: &FittedRig, (pattern, name): (&Pattern, &PatternName)) -> String {
+        let mut command = CommandLine::new("quality", self.mesh.as_deref());
+        command.camera(&rig.camera);
+        command.field(rig);
+        command.pattern(pattern, name);
+        command.colours(rig.palette);
+        let limits = &verdict.limits;
+        for (flag, value) in [("gap", limits.gap), ("angle", limits.angle_deg), ("curvature", limits.percent)] {
+            command.flag(flag, value);
+        }
+        if let Some(mm) = limits.mm_per_unit {
+            command.flag("mm-per-unit", mm);
+        }
+        if !verdict.ignored.is_empty() {
+            command.flag("ignore", verdict.ignored.iter().map(|kind| kind.name()).collect::<Vec<_>>().join(","));
+        }
+        command.flag("count", self.count);
+        command.finish(mesh_digest(verdict.mesh), &rig.method)
+    }
+}

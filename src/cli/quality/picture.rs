@@ -1,0 +1,160 @@
+//! The verdict as a picture: the field, with what breaks it.
+
+use super::Verdict;
+use crate::cli::Failure;
+use crate::cli::account::Account;
+use crate::curves::{Curve, Look, Place};
+use crate::gpu::{Gpu, TableLayout, View};
+use crate::output::{Canvas, Drawn, Mark, Panel, Pen, Scale, in_picture, sheet, write_png};
+use crate::quality::{Piece, Ranked, Subject};
+use crate::stam::LimitSurface;
+use glam::DVec2;
+use rayon::prelude::*;
+use std::path::Path;
+
+/// How much of the field's picture is left under the marks.
+const GROUND: f32 = 0.55;
+/// What is within its limits, or ignored.
+const QUIET: [u8; 3] = [96, 102, 112];
+/// Chords of a piece of a joint.
+const CHORDS: u32 = 8;
+
+pub(super) struct Picture<'a> {
+    pub surface: &'a LimitSurface,
+    pub view: &'a View,
+    /// How many are numbered.
+    pub count: usize,
+}
+
+/// What is known of a place of the list before it is drawn.
+struct Shown<'a> {
+    ranked: &'a Ranked<'a>,
+    colour: Option<[u8; 3]>,
+    all: Vec<Drawn>,
+    seen: Vec<Drawn>,
+    /// Where its number is due, and whether that is in front.
+    spot: Option<(DVec2, bool)>,
+}
+
+impl Picture<'_> {
+    pub fn draw(&self, path: &Path, verdict: &Verdict<'_>, account: &mut Account) -> Result<(), Failure> {
+        let gpu = account.time("adapter", Gpu::new)?;
+        let layout = match self.view.field.method.reads_curvature() {
+            true => TableLayout::Expanded,
+            false => TableLayout::Auto,
+        };
+        let tables = account.time("tables", || gpu.upload_as(self.surface, layout))?;
+        let frame = gpu.render(&tables, self.view)?;
+        account.add(&frame.timings);
+        let size = frame.size;
+        let shown = account.time("hidden lines", || self.shown(verdict));
+        let mut canvas = Canvas::new(size, frame.rgba8)
+            .ok_or_else(|| Failure::Bad("the picture's bytes do not match its size".to_owned()))?;
+        canvas.fade(GROUND);
+        lines(&mut canvas, &shown);
+        let marks = self.marks(verdict, &shown);
+        canvas.marks(&marks);
+        let panel = Panel {
+            caption: format!("{}, {}: {}", verdict.mesh.name, verdict.field.method, said(verdict, &marks)),
+            rgba8: canvas.into_rgba8(),
+            legend: Some((severities(verdict), legend(verdict))),
+        };
+        let (size, pixels) = sheet(size, &[panel]);
+        Ok(account.time("write", || write_png(path, size, &pixels, &verdict.made_by))?)
+    }
+
+    fn shown<'a>(&self, verdict: &'a Verdict<'_>) -> Vec<Shown<'a>> {
+        let look = Look::new(self.surface, &self.view.camera);
+        let scale = severities(verdict);
+        let of = |ranked: &'a Ranked<'a>| {
+            let pieces = match ranked.subject {
+                Subject::Feature(feature) => &feature.pieces[..],
+                Subject::Vertex(_) => &[],
+            };
+            let curves: Vec<Curve> = pieces.iter().map(|piece| self.curve(piece)).collect();
+            let flat =
+                |curves: &[Curve]| curves.iter().flat_map(|curve| in_picture(&self.view.camera, curve)).collect();
+            let spot = ranked.spot().and_then(|(_, position)| {
+                let at = DVec2::from_array(self.view.camera.project(position)?);
+                let size = DVec2::from_array(self.view.camera.size.map(f64::from));
+                let is_inside = at.cmpge(DVec2::ZERO).all() && at.cmplt(size).all();
+                is_inside.then(|| (at, look.sees(position)))
+            });
+            let is_over = ranked.is_over() && !verdict.is_ignored(ranked);
+            let severity = ranked.severity().min(f64::from(f32::MAX)) as f32;
+            let colour = is_over.then(|| scale.colour(severity));
+            Shown { ranked, colour, all: flat(&curves), seen: flat(&look.visible(&curves)), spot }
+        };
+        verdict.ranked.par_iter().map(of).collect()
+    }
+
+    fn curve(&self, piece: &Piece) -> Curve {
+        let points = (0..=CHORDS).map(|k| piece.point(self.surface, f64::from(k) / f64::from(CHORDS)));
+        let points: Vec<_> = points.collect();
+        // Where on the surface is not asked.
+        let places = vec![Place { face: 0, u: 0.0, v: 0.0 }; points.len()];
+        Curve { value: 0.0, light: 0, closed: false, points, places }
+    }
+
+    /// The numbers of the worst, as the list has them.
+    fn marks(&self, verdict: &Verdict<'_>, shown: &[Shown<'_>]) -> Vec<Mark> {
+        let judged = shown.iter().filter(|shown| !verdict.is_ignored(shown.ranked)).take(self.count);
+        let marks = judged.enumerate().filter_map(|(i, shown)| {
+            let (at, is_seen) = shown.spot?;
+            Some(Mark { at, number: i + 1, colour: shown.colour.unwrap_or(QUIET), is_seen })
+        });
+        marks.collect()
+    }
+}
+
+/// Colours of multiples of the limits: up to the largest angle or difference that there is.
+fn severities(verdict: &Verdict<'_>) -> Scale {
+    let limits = &verdict.limits;
+    let most = (180.0 / limits.angle_deg).max(200.0 / limits.percent);
+    Scale::logarithmic(1.0, most.clamp(10.0, 1e6) as f32)
+}
+
+/// Lines and dots of everything: hidden ones first and thin, the worst last.
+fn lines(canvas: &mut Canvas, shown: &[Shown<'_>]) {
+    const RIM: [u8; 3] = [24, 26, 30];
+    let pen = |colour, width, opacity| Pen { colour, width, opacity };
+    for shown in shown.iter().rev() {
+        canvas.lines(&shown.all, pen(shown.colour.unwrap_or(QUIET), 1.0, 0.4));
+    }
+    for shown in shown.iter().rev() {
+        match shown.colour {
+            Some(colour) => {
+                canvas.lines(&shown.seen, pen(RIM, 4.5, 1.0));
+                canvas.lines(&shown.seen, pen(colour, 2.5, 1.0));
+            }
+            None => canvas.lines(&shown.seen, pen(QUIET, 1.5, 1.0)),
+        }
+    }
+    for shown in shown.iter().rev() {
+        if let (Subject::Vertex(_), Some(colour), Some((at, true))) = (shown.ranked.subject, shown.colour, shown.spot) {
+            canvas.dot(at, 3.0, colour, true);
+        }
+    }
+}
+
+/// What the numbers are.
+fn said(verdict: &Verdict<'_>, marks: &[Mark]) -> String {
+    let hidden = marks.iter().filter(|mark| !mark.is_seen).count();
+    let over = verdict.over();
+    let hollow = if hidden > 0 { " (hollow: hidden)" } else { "" };
+    match over {
+        0 => format!("nothing of {} over its limits{hollow}", verdict.judged().count()),
+        _ => format!("{over} over their limits, the worst numbered{hollow}"),
+    }
+}
+
+fn legend(verdict: &Verdict<'_>) -> String {
+    let limits = &verdict.limits;
+    format!(
+        "Times the limit: gap {} {}, angle {} degrees, curvature {} %. Grey: within, or ignored",
+        limits.gap,
+        limits.unit(),
+        limits.angle_deg,
+        limits.percent
+    )
+}

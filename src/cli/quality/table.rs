@@ -1,0 +1,234 @@
+//! The verdict as text: a summary, and a list in columns.
+
+use super::Verdict;
+use crate::quality::{Break, Chain, Extremes, Kind, Line, LineBreak, Ranked, Spot, Subject, Vertex};
+use crate::statistics::short;
+use std::fmt::Write;
+
+/// Columns of the list; those of words are aligned to the left.
+const COLUMNS: [(&str, bool); 13] = [
+    ("rank", false),
+    ("kind", true),
+    ("edges or vertex", true),
+    ("face,u,v", true),
+    ("x,y,z", true),
+    ("G0", false),
+    ("G1 deg", false),
+    ("G2 %", false),
+    ("conc", true),
+    ("radius", false),
+    ("jump", false),
+    ("turn", false),
+    ("worst", false),
+];
+
+/// Figures below are rounding, for people.
+const ROUNDING: f64 = 1e-9;
+
+type Row = [String; COLUMNS.len()];
+
+/// The summary, the worst `count` of the list and the verdict.
+pub(super) fn text(verdict: &Verdict<'_>, count: usize) -> String {
+    let mut out = summary(verdict);
+    let diagonal = verdict.mesh.diagonal();
+    let all = verdict.judged().count();
+    let rows: Vec<Row> =
+        verdict.judged().take(count).enumerate().map(|(i, ranked)| row(verdict, i + 1, ranked, diagonal)).collect();
+    if !rows.is_empty() {
+        out.push('\n');
+        out += &aligned(&rows);
+    }
+    if all > rows.len() {
+        let _ = writeln!(out, "... and {} more (--count)", all - rows.len());
+    }
+    if !rows.is_empty() {
+        let _ = writeln!(
+            out,
+            "G0: gap, {0}. G2: 2 |k1 - k2| / (|k1| + |k2|). conc: curvature changes its sign. radius: the least across a\n\
+             semi-sharp crease, {0}. jump, turn: of the field's lines, in distances between them, degrees. worst: how many\n\
+             times its limit the worst figure is. ~0: below 1e-9.",
+            verdict.limits.unit()
+        );
+    }
+    let over = verdict.over();
+    let _ = match over {
+        0 => writeln!(out, "\npass: nothing of {all} is over its limits"),
+        _ => writeln!(out, "\nFAIL: {over} of {all} over their limits"),
+    };
+    out
+}
+
+fn summary(verdict: &Verdict<'_>) -> String {
+    let quality = verdict.quality;
+    let mut out = String::new();
+    let kinds = [("creases", Kind::ALL[0]), ("semi-sharp creases", Kind::ALL[1]), ("vertices", Kind::ALL[3])];
+    let counts = kinds.map(|(name, kind)| {
+        let of: Vec<&Ranked<'_>> = verdict.ranked.iter().filter(|ranked| ranked.kind() == kind).collect();
+        let over = of.iter().filter(|ranked| ranked.is_over()).count();
+        let ignored = if verdict.ignored.iter().any(|i| i.kind() == kind) { ", ignored" } else { "" };
+        format!("{} {name} ({over} over{ignored})", of.len())
+    });
+    let _ = writeln!(out, "{}: {}", verdict.mesh.name, counts.join(", "));
+    let Extremes { samples, gap, angle_deg, difference, .. } = quality.smooth;
+    let broken = verdict.ranked.iter().filter(|ranked| ranked.kind() == Kind::ALL[2]).count();
+    let _ = writeln!(
+        out,
+        "{} smooth joints at {samples} points ({broken} lines over): gap {}, angle {}, curvature {}",
+        quality.smooth_joints,
+        short(gap * verdict.limits.gap_unit()),
+        angle_deg.map_or("-".to_owned(), short),
+        difference.map_or("-".to_owned(), |difference| short(100.0 * difference) + " %"),
+    );
+    if !quality.unjudged_edges.is_empty() {
+        let _ = writeln!(out, "{} edges not judged: they are not manifold", quality.unjudged_edges.len());
+    }
+    let limits = &verdict.limits;
+    let _ = writeln!(
+        out,
+        "limits: gap {} {}, angle {} degrees, curvature {} %; field: {}",
+        limits.gap,
+        limits.unit(),
+        limits.angle_deg,
+        limits.percent,
+        verdict.field.method
+    );
+    out
+}
+
+fn aligned(rows: &[Row]) -> String {
+    let header = COLUMNS.map(|(name, _)| name.to_owned());
+    let all = || std::iter::once(&header).chain(rows);
+    let widths: Vec<usize> =
+        (0..COLUMNS.len()).map(|column| all().map(|row| row[column].chars().count()).max().unwrap_or(0)).collect();
+    let mut out = String::new();
+    for row in all() {
+        let cells = row.iter().zip(&widths).zip(COLUMNS).map(|((cell, &width), (_, is_left))| match is_left {
+            true => format!("{cell:<width$}"),
+            false => format!("{cell:>width$}"),
+        });
+        let _ = writeln!(out, "{}", cells.collect::<Vec<_>>().join(" ").trim_end());
+    }
+    out
+}
+
+fn row(verdict: &Verdict<'_>, rank: usize, ranked: &Ranked<'_>, diagonal: f64) -> Row {
+    let none = || "-".to_owned();
+    let (place, position) = match ranked.spot() {
+        Some((place, position)) => {
+            // A hundredth of the diagonal, or a little better.
+            let digits = (2.5 - diagonal.log10()).ceil().clamp(0.0, 9.0) as usize;
+            let coordinates = position.to_array().map(|x| format!("{x:.digits$}"));
+            (format!("{},{},{}", place.face, part(place.u), part(place.v)), coordinates.join(","))
+        }
+        None => (none(), none()),
+    };
+    let figures = Figures::of(ranked);
+    let gap = figures.gap * verdict.limits.gap_unit();
+    let (worst, ratio) = ranked.worst();
+    let worst = match (worst, ratio) {
+        (Break::Angle, f64::INFINITY) => "no plane".to_owned(),
+        _ if ratio <= 1.0 => "within".to_owned(),
+        _ => format!("{} {}x", worst.name(), short(ratio)),
+    };
+    [
+        rank.to_string(),
+        kind(ranked),
+        name(&ranked.subject),
+        place,
+        position,
+        figure(gap),
+        figures.angle_deg.map_or_else(none, figure),
+        figures.difference.map_or_else(none, |difference| short(100.0 * difference)),
+        if figures.concave { "yes".to_owned() } else { String::new() },
+        figures.radius.map_or_else(none, |radius| short(radius * verdict.limits.gap_unit())),
+        figures.line.map_or_else(none, |line| figure(line.lines)),
+        figures.turn_deg.map_or_else(none, figure),
+        worst,
+    ]
+}
+
+/// A number in few digits; what is rounding is about 0.
+fn figure(x: f64) -> String {
+    if x != 0.0 && x.abs() < ROUNDING { "~0".to_owned() } else { short(x) }
+}
+
+/// A parameter with at most three decimals.
+fn part(x: f64) -> String {
+    let text = format!("{x:.3}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+fn kind(ranked: &Ranked<'_>) -> String {
+    match ranked.subject {
+        Subject::Feature(feature) if ranked.kind() == Kind::ALL[1] => {
+            let [least, most] = feature.sharpness;
+            if least == most { format!("sharp {most}") } else { format!("sharp {least}-{most}") }
+        }
+        _ => ranked.kind().name().to_owned(),
+    }
+}
+
+/// What a row says.
+struct Figures {
+    gap: f64,
+    angle_deg: Option<f64>,
+    difference: Option<f64>,
+    concave: bool,
+    radius: Option<f64>,
+    line: Option<LineBreak>,
+    turn_deg: Option<f64>,
+}
+
+impl Figures {
+    fn of(ranked: &Ranked<'_>) -> Figures {
+        match ranked.subject {
+            Subject::Feature(feature) => {
+                let Extremes { gap, angle_deg, difference, concave, line, .. } = feature.extremes;
+                let turn_deg = line.and_then(|line| line.turn_deg);
+                Figures { gap, angle_deg, difference, concave, radius: feature.radius, line, turn_deg }
+            }
+            Subject::Vertex(vertex) => Figures {
+                gap: vertex.gap,
+                angle_deg: vertex.angle_deg,
+                difference: vertex.difference(),
+                concave: false,
+                radius: None,
+                line: None,
+                turn_deg: vertex.rings.last().and_then(|ring| ring.turn_deg),
+            },
+        }
+    }
+}
+
+/// Edges or a vertex, in few letters.
+fn name(subject: &Subject<'_>) -> String {
+    match subject {
+        Subject::Feature(feature) => match (&feature.chain, feature.line) {
+            (Some(chain), _) => chain_name(chain),
+            (None, Line::Edge([a, b])) => format!("{a}-{b}"),
+            (None, Line::Spoke { face, corner }) => format!("face {face}, spoke {corner}"),
+            (None, Line::Inside { ptex }) => format!("inside ptex {ptex}"),
+        },
+        Subject::Vertex(Vertex { spot, faces, kind, .. }) => {
+            let spot = match spot {
+                Spot::Vertex(vertex) => vertex.to_string(),
+                Spot::Centre(face) => format!("centre of {face}"),
+                Spot::Middle([a, b]) => format!("middle of {a}-{b}"),
+                Spot::Inside(ptex) => format!("inside ptex {ptex}"),
+            };
+            let faces = if *faces == 1 { "1 face".to_owned() } else { format!("{faces} faces") };
+            format!("{spot} {}, {faces}", kind.name())
+        }
+    }
+}
+
+fn chain_name(chain: &Chain) -> String {
+    let edges = chain.edges().count();
+    match (&chain.vertices[..], chain.closed) {
+        ([a, b], _) => format!("{a}-{b}"),
+        ([a, b, c], false) => format!("{a}-{b}-{c}"),
+        ([a, b, .., z], false) => format!("{a}-{b}..{z} ({edges})"),
+        ([a, b, ..], true) => format!("{a}-{b}..{a} ({edges})"),
+        _ => String::new(),
+    }
+}

@@ -1,0 +1,226 @@
+//! `catoptric quality` as a user meets it.
+
+use catoptric::field::{Method, Scout};
+use catoptric::mesh;
+use catoptric::quality::{Limits, Quality, Reading, Subject};
+use catoptric::stam::LimitSurface;
+use glam::DVec3;
+use serde_json::Value;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn mesh_path(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes").join(name).with_extension("obj")
+}
+
+fn quality(folder: &Path, name: &str, args: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_catoptric"));
+    command.arg("quality").arg(mesh_path(name)).args(args).current_dir(folder);
+    command.output().expect("the program starts")
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+/// Exit code, standard output and the JSON.
+fn run(name: &str, args: &[&str]) -> (Option<i32>, String, Value) {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let output = quality(folder.path(), name, &[args, &["--json", "q.json"]].concat());
+    assert!(output.stderr.is_empty(), "{}", text(&output.stderr));
+    let json = fs::read(folder.path().join("q.json")).expect("it was written");
+    (output.status.code(), text(&output.stdout), serde_json::from_slice(&json).expect("JSON"))
+}
+
+fn places(json: &Value) -> &[Value] {
+    json["places"].as_array().expect("a list")
+}
+
+#[test]
+fn exit_codes_say_what_the_limits_say() {
+    // Smooth but for a crease that turns: sectors of 1 and 3 faces.
+    let name = "crease_sectors_1_3";
+    let (code, out, json) = run(name, &[]);
+    assert_eq!((code, &json["pass"]), (Some(1), &false.into()), "{out}");
+    assert!(out.contains("\nFAIL: 3 of 3 over their limits\n"), "{out}");
+    let (code, out, json) = run(name, &["--ignore", "creases,vertices"]);
+    assert_eq!((code, &json["pass"], &json["judged"]), (Some(0), &true.into(), &0.into()), "{out}");
+    assert!(places(&json).iter().all(|place| place["rank"].is_null()) && places(&json).len() == 3);
+    assert!(out.contains("pass: nothing of 0 is over its limits"), "{out}");
+    let (code, _, json) = run(name, &["--angle", "180", "--curvature=200"]);
+    assert_eq!((code, &json["over"], &json["judged"]), (Some(0), &0.into(), &3.into()));
+    // Between the angle of the crease and a hair more: a limit is kept by what is equal to it.
+    let angle =
+        places(&json).iter().find(|place| place["kind"] == "crease").expect("a crease")["angle_deg"].to_string();
+    let only = |angle: &str| run(name, &["--angle", angle, "--curvature=200"]).0;
+    assert_eq!(only(&angle), Some(0));
+    assert_eq!(only(&format!("{}", angle.parse::<f64>().expect("a number") * (1.0 - 1e-12))), Some(1));
+    // No feature at all.
+    let (code, out, json) = run("boundary_edge_and_corner", &[]);
+    assert_eq!((code, places(&json).len()), (Some(0), 0), "{out}");
+    // Finite sharpness is no break.
+    let (code, out, json) = run("semi_sharp_crease", &[]);
+    assert_eq!((code, places(&json).len()), (Some(0), 1), "{out}");
+    assert!(out.contains("sharp 2.3") && out.contains("within"), "{out}");
+}
+
+/// JSON is the library's measurement, in its order.
+#[test]
+fn json_is_what_the_library_measures() {
+    for name in ["three_creases", "corner", "ngon_at_crease"] {
+        let (_, out, json) = run(name, &["--field", "isophote", "--mm-per-unit", "10", "--gap", "0.5"]);
+        let mesh = mesh::read(&mesh_path(name)).expect("a test mesh is valid");
+        let surface = LimitSurface::new(&mesh).expect("it has a surface");
+        let scout = Scout::new(&surface).expect("it has faces");
+        let camera = scout.camera([1024, 1024], DVec3::Z);
+        let field = scout.field(&Method::Isophote, &camera);
+        let limits = Limits { gap: 0.05, ..Limits::default() };
+        let quality = Quality::measure(&mesh, &surface, Some(Reading { field: &field, camera: &camera }), &limits);
+        let ranked = quality.ranked(&limits);
+        assert!(ranked.len() > 2 && ranked.len() == places(&json).len());
+        let close = |value: &Value, expected: Option<f64>, what: &str| match expected {
+            None => assert!(value.is_null(), "{name} {what}: {value}"),
+            Some(expected) => {
+                // The light of the command is made of what its record says of it: a few roundings.
+                let found = value.as_f64().unwrap_or_else(|| panic!("{name} {what}: {value}"));
+                assert!((found - expected).abs() <= 1e-9 * expected.abs() + 1e-9, "{name} {what}: {found} {expected}");
+            }
+        };
+        let finite = |x: f64| Some(x).filter(|x| x.is_finite());
+        let mut before = f64::INFINITY;
+        for (i, (place, ranked)) in places(&json).iter().zip(&ranked).enumerate() {
+            assert_eq!((&place["rank"], &place["kind"]), (&(i + 1).into(), &ranked.kind().name().into()));
+            assert_eq!(place["over"], ranked.is_over());
+            let severity = ranked.severity();
+            assert!(severity <= before, "{out}");
+            before = severity;
+            close(&place["severity"], finite(severity), "severity");
+            for (key, (what, ratio)) in ["gap", "angle", "curvature"].into_iter().zip(ranked.ratios) {
+                assert_eq!(key, what.name());
+                close(&place["times_limit"][key], finite(ratio), key);
+            }
+            let percent = |difference: Option<f64>| difference.map(|difference| 100.0 * difference);
+            match ranked.subject {
+                Subject::Feature(feature) => {
+                    close(&place["gap"], Some(10.0 * feature.extremes.gap), "gap");
+                    close(&place["angle_deg"], feature.extremes.angle_deg, "angle");
+                    close(&place["curvature_percent"], percent(feature.extremes.difference), "curvature");
+                    assert_eq!(place["concave"], feature.extremes.concave);
+                    let line = feature.extremes.line;
+                    close(&place["line"]["jump"], line.map(|line| line.jump), "jump");
+                    close(&place["line"]["jump_lines"], line.map(|line| line.lines), "lines");
+                    close(&place["line"]["along"], line.and_then(|line| line.along), "along");
+                    close(&place["line"]["turn_deg"], line.and_then(|line| line.turn_deg), "turn");
+                    close(&place["radius"], feature.radius.and_then(finite).map(|radius| 10.0 * radius), "radius");
+                    let chain = feature.chain.as_ref().expect("a chain");
+                    assert_eq!(place["vertices"].as_array().map(Vec::len), Some(chain.vertices.len()));
+                }
+                Subject::Vertex(vertex) => {
+                    close(&place["gap"], Some(10.0 * vertex.gap), "gap");
+                    close(&place["angle_deg"], vertex.angle_deg, "angle");
+                    close(&place["curvature_percent"], percent(vertex.difference()), "curvature");
+                    close(&place["growth"], vertex.growth, "growth");
+                    assert_eq!(place["faces"], vertex.faces);
+                    assert_eq!(place["rings"].as_array().map(Vec::len), Some(vertex.rings.len()));
+                }
+            }
+            let at = &place["at"];
+            let [face, u, v] = ["face", "u", "v"].map(|key| at[key].as_f64().expect("a number"));
+            let (_, jet) = surface.evaluate_ptex(face as u32, [u, v]).expect("no hole");
+            for axis in 0..3 {
+                close(&at["position"][axis], Some(jet.position[axis]), "position");
+            }
+        }
+        close(&json["smooth_joints"]["gap"], Some(10.0 * quality.smooth.gap), "smooth gap");
+        assert_eq!(json["smooth_joints"]["joints"], quality.smooth_joints);
+    }
+}
+
+/// Rows are as many as asked for, and columns stand under one another.
+#[test]
+fn the_list_is_a_table() {
+    let (_, out, json) = run("corner", &["--count", "4"]);
+    let lines: Vec<&str> = out.lines().collect();
+    let header = lines.iter().position(|line| line.starts_with("rank kind")).expect("a header");
+    let end = lines[header].find("worst").expect("a column") + "worst".len();
+    for (i, row) in lines[header + 1..header + 5].iter().enumerate() {
+        assert!(row.trim_start().starts_with(&format!("{} ", i + 1)) && row.len() <= 120, "{row}");
+        // Multiples are aligned to the right.
+        assert!(row.len() <= end, "{out}");
+    }
+    let rest = places(&json).len() - 4;
+    assert!(lines[header + 5] == format!("... and {rest} more (--count)"), "{out}");
+    // The command that makes it again does.
+    let made_by = json["made_by"].as_str().expect("a text");
+    assert!(made_by.starts_with("catoptric ") && made_by.contains(" quality corner.obj --size=1024x1024"), "{made_by}");
+    let (_, again) = made_by.split_once("corner.obj ").expect("the mesh");
+    let (flags, _) = again.split_once(" # mesh ").expect("a digest");
+    let flags: Vec<&str> = flags.split(' ').collect();
+    let (_, _, second) = run("corner", &flags);
+    assert_eq!(json, second);
+}
+
+#[test]
+fn breaks_are_marked_in_the_picture() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let draw = |file: &str, args: &[&str]| {
+        let output = quality(folder.path(), "three_creases", &[args, &["-o", file, "--size", "320x240"]].concat());
+        assert!(output.stderr.is_empty(), "{}", text(&output.stderr));
+        image::open(folder.path().join(file)).expect("a picture").to_rgb8()
+    };
+    let marked = draw("a.png", &[]);
+    let plain = draw("b.png", &["--count", "0"]);
+    let nothing = draw("c.png", &["--count", "0", "--ignore", "creases,vertices"]);
+    // The picture, a caption above and a legend below.
+    assert_eq!(marked.width(), 320 + 24);
+    assert!(marked.height() > 240 + 60);
+    let differ = |a: &image::RgbImage, b: &image::RgbImage| {
+        // Without the caption, which says something else.
+        a.enumerate_pixels().filter(|(x, y, pixel)| *y > 34 && b.get_pixel(*x, *y) != *pixel).count()
+    };
+    let (numbers, colours) = (differ(&marked, &plain), differ(&plain, &nothing));
+    assert!(numbers > 500 && colours > 500, "{numbers} {colours}");
+    // The same again.
+    assert!(differ(&marked, &draw("a.png", &[])) == 0);
+    let made_by = catoptric::output::read_png_made_by(std::io::BufReader::new(
+        fs::File::open(folder.path().join("a.png")).expect("it was written"),
+    ));
+    assert!(made_by.expect("a PNG").expect("a text").contains(" quality three_creases.obj --size=320x240"));
+}
+
+#[test]
+fn bad_input_is_one_line_and_leaves_nothing() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    for (args, part) in [
+        (&["--gap", "-0.1"][..], "--gap"),
+        (&["--angle", "nan"], "give a number, 0 or above"),
+        (&["--curvature", "inf"], "give a number, 0 or above"),
+        (&["--curvature", "x"], "--curvature"),
+        (&["--mm-per-unit", "0"], "give a number above 0"),
+        (&["--ignore", "seams"], "possible values: creases, semi-sharp, smooth, vertices"),
+        (&["--count", "some"], "--count"),
+        (&["-o", "q.jpg"], "choose a name that ends in .png"),
+        (&["-o", "no/such/q.png"], "no/such/q.png: cannot write"),
+        (&["--json", "no/such/q.json"], "no/such/q.json: cannot write"),
+        (&["-o", "q.png", "--json", "q.png"], "--json would overwrite the picture"),
+        (&["--field", "zebra"], "--field"),
+        (&["--height", "2"], "--height applies to --projection orthographic only"),
+    ] {
+        let output = quality(folder.path(), "cube", args);
+        let error = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{args:?}: {error}");
+        assert!(error.starts_with("catoptric: ") && error.contains(part) && error.lines().count() == 1, "{error}");
+        assert!(output.stdout.is_empty());
+        assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 0, "{args:?}");
+    }
+    let output = quality(folder.path(), "no_such_mesh", &[]);
+    assert_eq!((output.status.code(), text(&output.stderr).lines().count()), (Some(2), 1));
+    // No face has a surface.
+    let bare = folder.path().join("bare.obj");
+    fs::write(&bare, "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\nt interpolateboundary 1/0/0 0\n")
+        .expect("it is written");
+    let output = quality(folder.path(), bare.to_str().expect("a name"), &[]);
+    let error = text(&output.stderr);
+    assert!(output.status.code() == Some(2) && error.contains("nothing to measure"), "{error}");
+}
