@@ -116,6 +116,25 @@ fn any_frame_is_drawn_again_alone() {
     }
 }
 
+/// EXR pictures say the same as PNG pictures.
+#[test]
+fn exr_pictures_say_so_too() {
+    let folder = Folder::new();
+    let mesh = mesh();
+    let flags = ["--rig=tunnel", "--paint=#123456", "--light-attached=camera", "--size=48x40"];
+    let said = ["v.png", "v.exr"].map(|name| {
+        folder.done(&[&["render", &mesh, "-o", name][..], &flags].concat());
+        let file = std::io::BufReader::new(std::fs::File::open(folder.path(name)).expect(name));
+        match name {
+            "v.png" => catoptric::output::read_png_made_by(file),
+            _ => catoptric::output::read_exr_made_by(file),
+        }
+    });
+    let [png, exr] = said.map(|said| said.expect("it is whole").expect("it says so"));
+    assert_eq!(png, exr);
+    assert!(exr.contains(" '--paint=#123456' ") && exr.contains(" --light-attached=camera "), "{exr}");
+}
+
 /// Another picture of the same name is not the same pattern.
 #[test]
 fn patterns_are_told_apart() {
