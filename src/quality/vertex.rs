@@ -87,9 +87,13 @@ impl Vertex {
         self.rings.last().map(|ring| ring.spread).filter(|_| self.tangent_plane)
     }
 
-    /// How many times its limit each figure is.
+    /// How many times its limit each figure is. Where its rules have no tangent plane and the surface is curved, the angle is infinitely many
+    /// times its limit although the normals of the patches may agree at the vertex itself, as they do in crease sectors of five faces
+    /// and more; where they do not, the angle says more.
     pub fn ratios(&self, limits: &Limits) -> [(Break, f64); 3] {
-        limits.ratios(self.gap, self.angle_deg, self.difference())
+        let is_flat = self.rings.last().is_some_and(|ring| ring.curvature == 0.0);
+        let is_shown = self.tangent_plane || is_flat || self.angle_deg.is_some_and(|angle| angle > limits.angle_deg);
+        limits.ratios(self.gap, self.angle_deg.filter(|_| is_shown), self.difference())
     }
 }
 

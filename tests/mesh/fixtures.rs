@@ -39,7 +39,7 @@ fn edges_with(mesh: &SubdivMesh, faces: usize) -> usize {
 fn all_are_read_and_listed() {
     let readme = std::fs::read_to_string(manifest_path("tests/meshes/README.md")).unwrap();
     let files = obj_files(&manifest_path("tests/meshes"));
-    assert_eq!(files.len(), 65);
+    assert_eq!(files.len(), 67);
     for file in files {
         let mesh = mesh::read(&file).unwrap();
         assert!(readme.contains(&format!("`{}`", mesh.name)), "{} is not in the README", mesh.name);

@@ -47,7 +47,7 @@ fn exit_codes_say_what_the_limits_say() {
     let (code, out, json) = run(name, &["--ignore", "creases,vertices"]);
     assert_eq!((code, &json["pass"], &json["judged"]), (Some(0), &true.into(), &0.into()), "{out}");
     assert!(places(&json).iter().all(|place| place["rank"].is_null()) && places(&json).len() == 3);
-    assert!(out.contains("pass: nothing of 0 is over its limits"), "{out}");
+    assert!(out.contains("pass: none of 0 is over its limits"), "{out}");
     let (code, _, json) = run(name, &["--angle", "180", "--curvature=200"]);
     assert_eq!((code, &json["over"], &json["judged"]), (Some(0), &0.into(), &3.into()));
     // Between the angle of the crease and a hair more: a limit is kept by what is equal to it.
@@ -63,6 +63,26 @@ fn exit_codes_say_what_the_limits_say() {
     let (code, out, json) = run("semi_sharp_crease", &[]);
     assert_eq!((code, places(&json).len()), (Some(0), 1), "{out}");
     assert!(out.contains("sharp 2.3") && out.contains("within"), "{out}");
+}
+
+/// Ulmet 2003, figures 6.1 and 6.2: surfaces of revolution that are C1 and C2. The same control points, with a sharp ring and without.
+#[test]
+fn kinks_are_found_on_the_c1_lathe_and_none_on_the_c2_one() {
+    let (code, out, json) = run("lathe_c1", &["--field", "sphere"]);
+    let [kink] = places(&json) else { panic!("one crease: {out}") };
+    let number = |value: &Value| value.as_f64().expect("a number");
+    assert_eq!(
+        (code, &kink["kind"], &kink["worst"], &kink["closed"]),
+        (Some(1), &"crease".into(), &"curvature".into(), &true.into())
+    );
+    // Tangent planes agree as well as a spline of 24 points is a circle; one side is straight, so the difference is all there is.
+    assert!(number(&kink["angle_deg"]) < 0.02 && kink["curvature_percent"] == 200.0, "{kink}");
+    assert!(number(&kink["line"]["turn_deg"]) > 20.0, "{kink}");
+    let (code, out, json) = run("lathe_c2", &["--field", "sphere"]);
+    assert_eq!((code, places(&json).len()), (Some(0), 0), "{out}");
+    let smooth = &json["smooth_joints"];
+    assert_eq!((&smooth["curvature_percent"], &smooth["concave"]), (&0.0.into(), &false.into()));
+    assert!(number(&smooth["joints"]) == 24.0 * 17.0 && number(&smooth["line"]["turn_deg"]) < 1e-6, "{smooth}");
 }
 
 /// JSON is the library's measurement, in its order.

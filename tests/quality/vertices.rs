@@ -104,6 +104,19 @@ fn sectors_are_judged_one_by_one() {
     assert_eq!(faces("cone"), [(PatchKind::Corner, 5, false)]);
     let [cone] = &vertices("cone")[..] else { panic!("one vertex") };
     assert!(cone.angle_deg.expect("normals") > 10.0 && cone.difference().is_none(), "{cone:?}");
+    // Where normals agree at the vertex itself, that is no tangent plane; unless the sheet is flat.
+    for vertex in vertices("crease_sectors_5_6") {
+        assert!(vertex.angle_deg.expect("normals") < 1e-9, "{vertex:?}");
+        assert_eq!(vertex.ratios(&Limits::default())[1].1, f64::INFINITY);
+    }
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes/boundary_corner_3.obj");
+    let mut mesh = mesh::read(&path).expect("a test mesh is valid");
+    mesh.points.iter_mut().for_each(|point| point.z = 0.0);
+    let surface = LimitSurface::new(&mesh).expect("it has a surface");
+    let quality = Quality::measure(&mesh, &surface, None, &Limits::default());
+    assert!(quality.vertices.iter().any(|vertex| !vertex.tangent_plane && vertex.kind == PatchKind::Corner));
+    let ranked = quality.ranked(&Limits::default());
+    assert!(!ranked.is_empty() && ranked.iter().all(|ranked| !ranked.is_over()), "{:?}", ranked[0].ratios);
     let hexagon = vertices("ngon_at_crease");
     assert!(hexagon.iter().any(|vertex| matches!(vertex.spot, Spot::Centre(_)) && vertex.faces == 6));
 }

@@ -55,7 +55,7 @@ impl Picture<'_> {
         let marks = self.marks(verdict, &shown);
         canvas.marks(&marks);
         let panel = Panel {
-            caption: format!("{}, {}: {}", verdict.mesh.name, verdict.field.method, said(verdict, &marks)),
+            caption: format!("{}: {}", verdict.mesh.name, said(verdict, &marks)),
             rgba8: canvas.into_rgba8(),
             legend: Some((severities(verdict), legend(verdict))),
         };
@@ -139,22 +139,15 @@ fn lines(canvas: &mut Canvas, shown: &[Shown<'_>]) {
 
 /// What the numbers are.
 fn said(verdict: &Verdict<'_>, marks: &[Mark]) -> String {
-    let hidden = marks.iter().filter(|mark| !mark.is_seen).count();
-    let over = verdict.over();
-    let hollow = if hidden > 0 { " (hollow: hidden)" } else { "" };
-    match over {
-        0 => format!("nothing of {} over its limits{hollow}", verdict.judged().count()),
-        _ => format!("{over} over their limits, the worst numbered{hollow}"),
+    let hollow = if marks.iter().all(|mark| mark.is_seen) { "" } else { " (hollow: hidden)" };
+    match verdict.over() {
+        0 => format!("none over its limits{hollow}"),
+        over => format!("{over} over their limits{hollow}"),
     }
 }
 
 fn legend(verdict: &Verdict<'_>) -> String {
     let limits = &verdict.limits;
-    format!(
-        "Times the limit: gap {} {}, angle {} degrees, curvature {} %. Grey: within, or ignored",
-        limits.gap,
-        limits.unit(),
-        limits.angle_deg,
-        limits.percent
-    )
+    let unit = limits.unit();
+    format!("Times the limit ({} {unit}, {} degrees, {} %)", limits.gap, limits.angle_deg, limits.percent)
 }

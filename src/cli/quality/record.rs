@@ -82,6 +82,7 @@ fn of_feature(verdict: &Verdict<'_>, feature: &Feature) -> Value {
     value["vertices"] = json!(chain.map(|chain| &chain.vertices));
     value["closed"] = json!(chain.map(|chain| chain.closed));
     value["sharpness"] = json!(feature.sharpness);
+    value["curvatures"] = json!(feature.extremes.worst.and_then(|(_, worst)| worst.continuity.curvature));
     // Flat: an infinite radius, which JSON has not.
     value["radius"] =
         json!(feature.radius.filter(|radius| radius.is_finite()).map(|radius| radius * verdict.limits.gap_unit()));

@@ -52,7 +52,7 @@ pub(super) fn text(verdict: &Verdict<'_>, count: usize) -> String {
     }
     let over = verdict.over();
     let _ = match over {
-        0 => writeln!(out, "\npass: nothing of {all} is over its limits"),
+        0 => writeln!(out, "\npass: none of {all} is over its limits"),
         _ => writeln!(out, "\nFAIL: {over} of {all} over their limits"),
     };
     out
