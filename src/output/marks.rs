@@ -10,7 +10,7 @@ use tiny_skia::{FillRule, IntSize, LineCap, LineJoin, Paint, Path, PathBuilder, 
 const PADDING: f64 = 4.0;
 const LINE: f64 = 16.0;
 /// Pixels between a point and the nearest edge of its number's box.
-const DISTANCES: [f64; 6] = [10.0, 22.0, 38.0, 58.0, 84.0, 120.0];
+const DISTANCES: [f64; 8] = [10.0, 22.0, 38.0, 58.0, 84.0, 120.0, 160.0, 210.0];
 /// Directions in which room for a number is looked for.
 const DIRECTIONS: u32 = 12;
 
@@ -210,7 +210,7 @@ mod tests {
     fn marks_are_drawn_and_pictures_stay_opaque() {
         let mark = |at: [f64; 2], number, is_seen| Mark { at: at.into(), number, colour: [250, 10, 20], is_seen };
         let mut canvas = Canvas::new([120, 80], [90, 100, 110, 255].repeat(120 * 80)).expect("the bytes match");
-        canvas.fade(0.5);
+        canvas.fade(0.6);
         canvas.lines(
             [&Drawn { closed: true, points: vec![dvec2(5.0, 5.0), dvec2(20.0, 70.0), dvec2(40.0, 9.0)] }],
             Pen { colour: [0, 0, 255], width: 2.0, opacity: 1.0 },
@@ -220,7 +220,7 @@ mod tests {
         let (pixels, _) = rgba8.as_chunks::<4>();
         let at = |x: usize, y: usize| pixels[y * 120 + x];
         assert!(pixels.iter().all(|pixel| pixel[3] == 255));
-        assert_eq!((at(0, 79), at(30, 40), at(90, 40)), ([173, 178, 183, 255], [250, 10, 20, 255], [255; 4]));
+        assert_eq!((at(0, 79), at(30, 40), at(90, 40)), ([156, 162, 168, 255], [250, 10, 20, 255], [255; 4]));
         let count = |colour: [u8; 3]| pixels.iter().filter(|pixel| pixel[..3] == colour).count();
         assert!(count([0, 0, 255]) > 100 && count([250, 10, 20]) > 60 && count([255; 3]) > 300);
         // A picture of one pixel takes them too.
