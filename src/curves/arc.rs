@@ -191,8 +191,11 @@ impl Tracer<'_> {
     /// Whether nothing of the arc is the contour, as clearly as the model can say.
     fn is_invalid(&self, cell: &Cell, axis: usize) -> bool {
         const PROBES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
-        let Some(valid) = cell.valid else { return false };
-        let values = PROBES.map(|part| self.guess(cell, axis, part).valid);
+        let Some(valid) = cell.valid.filter(|valid| valid.range()[0] <= 0.0) else { return false };
+        let values = PROBES.map(|part| {
+            let zero = cell.sum.line(axis, part).zero();
+            valid.value(if axis == 0 { [zero, part] } else { [part, zero] })
+        });
         let [low, high] = values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], &v| [l.min(v), h.max(v)]);
         high + (high - low) + valid.error < 0.0
     }
@@ -301,6 +304,9 @@ pub(super) fn distance(p: DVec3, a: DVec3, b: DVec3) -> f64 {
 /// Part of a range within which secants gain digits with every step.
 const NEAR: f64 = 1e-6;
 
+/// Product of two steps, over the range's square, beyond which rounding is larger.
+const MISSED: f64 = 1e-23;
+
 /// A zero of the first of two functions, which is monotone on a range, to the last digits, and the second one there; `positive`: at the
 /// range's start the first is above 0. From the zero of the polynomial that stands in for it by secants, which a tenth step or a third
 /// value finds; where they fail, by halves. `None` where the functions are undefined on the way.
@@ -317,8 +323,14 @@ fn zero(
     let mut x = low + start * width;
     let [mut value, mut other] = f(x)?;
     let mut step = -value / slope;
+    let mut before = width;
     for _ in 0..100 {
-        if value == 0.0 || high - low <= smallest || step.abs() <= smallest {
+        if value == 0.0 || high - low <= smallest {
+            break;
+        }
+        // Secants miss by the product of two steps, about.
+        if step.abs() <= smallest || (step / width * (before / width)).abs() <= MISSED {
+            x = (x + step).clamp(low, high);
             break;
         }
         if (value > 0.0) == positive {
@@ -337,6 +349,7 @@ fn zero(
             break;
         }
         let secant = -new * (next - x) / (new - value);
+        before = next - x;
         (x, value, other) = (next, new, beside);
         if is_rounding {
             break;

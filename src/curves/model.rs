@@ -218,7 +218,7 @@ impl Sum {
     /// The polynomial along `axis`, at a place 0 to 1 of the other: Bernstein coefficients.
     pub fn line(&self, axis: usize, place: f64) -> Line {
         let weights = basis(place);
-        Line(std::array::from_fn(|k| {
+        Line::new(std::array::from_fn(|k| {
             let of = |j: usize| self.coefficients[if axis == 0 { j * N + k } else { k * N + j }];
             (0..N).map(|j| weights[j] * of(j)).sum()
         }))
@@ -232,18 +232,35 @@ impl Sum {
     }
 }
 
-/// A polynomial of degree 4 on 0 to 1.
+/// A polynomial of degree 4 on 0 to 1, by its powers.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Line([f64; N]);
 
 impl Line {
+    fn new([a, b, c, d, e]: [f64; N]) -> Line {
+        Line([
+            a,
+            4.0 * (b - a),
+            6.0 * (c - 2.0 * b + a),
+            4.0 * (d - 3.0 * (c - b) - a),
+            e - 4.0 * (d + b) + 6.0 * c + a,
+        ])
+    }
+
     fn value(&self, x: f64) -> f64 {
-        basis(x).iter().zip(&self.0).map(|(b, c)| b * c).sum()
+        let [a, b, c, d, e] = self.0;
+        a + x * (b + x * (c + x * (d + x * e)))
+    }
+
+    /// Its derivative.
+    pub fn slope(&self, x: f64) -> f64 {
+        let [_, b, c, d, e] = self.0;
+        b + x * (2.0 * c + x * (3.0 * d + x * (4.0 * e)))
     }
 
     /// A zero between ends of different sign, or the end that is nearer to 0.
     pub fn zero(&self) -> f64 {
-        let [first, last] = [self.0[0], self.0[N - 1]];
+        let [first, last] = [self.0[0], self.value(1.0)];
         if (first > 0.0) == (last > 0.0) {
             return if first.abs() < last.abs() { 0.0 } else { 1.0 };
         }
@@ -256,21 +273,14 @@ impl Line {
             } else {
                 high = x
             }
-            let next = x - value / self.slope(x);
-            let step = next - x;
-            x = if next > low && next < high { next } else { 0.5 * (low + high) };
+            let step = -value / self.slope(x);
             if step.abs() < 1e-9 {
                 break;
             }
+            let next = x + step;
+            x = if next > low && next < high { next } else { 0.5 * (low + high) };
         }
         x
-    }
-
-    /// Its derivative.
-    pub fn slope(&self, x: f64) -> f64 {
-        let y = 1.0 - x;
-        let weights = [y * y * y, 3.0 * y * y * x, 3.0 * y * x * x, x * x * x];
-        (0..N - 1).map(|k| 4.0 * weights[k] * (self.0[k + 1] - self.0[k])).sum()
     }
 }
 
@@ -386,7 +396,11 @@ mod tests {
         let f = |[u, v]: [f64; 2]| (1.0 - 2.0 * u + u.powi(4)) * (0.3 + v * v - 2.0 * v.powi(3)) + v.powi(4);
         let values = std::array::from_fn(|k| f([NODES[k % N], NODES[k / N]]));
         let bernstein = to_bernstein(&values);
+        let sum = Sum { coefficients: bernstein, error: 0.0, corners: [0.0; 4] };
         for at in TRIED.into_iter().chain([[0.0, 1.0], [1.0, 0.3]]) {
+            for axis in 0..2 {
+                assert!((sum.line(axis, at[1 - axis]).value(at[axis]) - f(at)).abs() < 1e-14, "{at:?} along {axis}");
+            }
             assert!((evaluate(&bernstein, at) - f(at)).abs() < 1e-14, "{at:?}");
             for k in 0..4 {
                 let quarter = &halves(&halves(&bernstein, N, 1)[k % 2], 1, N)[k / 2];

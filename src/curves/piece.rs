@@ -94,8 +94,8 @@ impl Piece {
     /// Position at parameters of the piece, each 0 to 1.
     pub fn position(&self, [s, t]: [f64; 2]) -> DVec3 {
         let (bs, bt) = (basis(s)[0], basis(t)[0]);
-        let row = |j: usize| weighted(&bs, [0, 1, 2, 3].map(|i| self.net[4 * j + i]));
-        self.origin + self.scale * weighted(&bt, [0, 1, 2, 3].map(row))
+        let rows: &[[DVec3; 4]] = self.net.as_chunks().0;
+        self.origin + self.scale * weighted(&bt, &[0, 1, 2, 3].map(|j| weighted(&bs, &rows[j])))
     }
 
     /// Whether rounding leaves ten digits of a curvature: it is a second difference of points over the square of their distance.
@@ -117,10 +117,14 @@ impl Piece {
     pub fn line(&self, scene: &Scene, s: f64) -> Line {
         let second = scene.field.method.reads_curvature();
         let [b, d, c] = basis(s);
-        let points = std::array::from_fn(|j| {
-            let sum = |weights: &[f64; 4]| weighted(weights, [0, 1, 2, 3].map(|i| self.net[4 * j + i]));
-            [sum(&b), sum(&d), if second { sum(&c) } else { DVec3::ZERO }]
-        });
+        let mut points = [[DVec3::ZERO; 3]; 4];
+        for (points, row) in points.iter_mut().zip(self.net.as_chunks().0) {
+            points[0] = weighted(&b, row);
+            points[1] = weighted(&d, row);
+            if second {
+                points[2] = weighted(&c, row);
+            }
+        }
         Line { s, points }
     }
 
@@ -128,7 +132,8 @@ impl Piece {
     pub fn functions_on(&self, scene: &Scene, line: &Line, t: f64) -> Option<Functions> {
         let second = scene.field.method.reads_curvature();
         let [e, f, g] = basis(t);
-        let sum = |weights: &[f64; 4], k: usize| weighted(weights, line.points.each_ref().map(|points| points[k]));
+        let [p, q, r, s] = &line.points;
+        let sum = |weights: &[f64; 4], k: usize| weighted(weights, &[p[k], q[k], r[k], s[k]]);
         let (du, dv) = (sum(&e, 1), sum(&f, 0));
         let across = du.cross(dv);
         // Where derivatives vanish, the reference knows the limit of the normals; where they are parallel the patch is folded, and the
@@ -165,11 +170,13 @@ pub(super) struct Line {
     points: [[DVec3; 3]; 4],
 }
 
-fn weighted(weights: &[f64; 4], points: [DVec3; 4]) -> DVec3 {
+#[inline]
+fn weighted(weights: &[f64; 4], points: &[DVec3; 4]) -> DVec3 {
     (weights[0] * points[0] + weights[1] * points[1]) + (weights[2] * points[2] + weights[3] * points[3])
 }
 
 /// Values, first and second derivatives of the four uniform cubic B-splines.
+#[inline]
 fn basis(t: f64) -> [[f64; 4]; 3] {
     let s = 1.0 - t;
     let (s2, t2) = (s * s, t * t);

@@ -41,6 +41,7 @@ const POLE: f64 = 3e-4;
 const SMALLEST_ISOPHOTE: f64 = 1e-7;
 
 /// A weighted sum.
+#[inline]
 pub(crate) fn weighted(weights: &Functions, functions: &Functions) -> f64 {
     (weights[0] * functions[0] + weights[1] * functions[1]) + (weights[2] * functions[2] + weights[3] * functions[3])
 }
@@ -139,12 +140,14 @@ impl Field {
 }
 
 /// Direction of the mirrored line of sight, of unit length as the normal is.
+#[inline]
 fn ray(normal: DVec3, sight: DVec3) -> Option<DVec3> {
     Some(reflection_direction(normal, sight.try_normalize()?))
 }
 
 /// Homogeneous coordinates (x w, y w, w) of the point of the light plane on a line (Ulmet 2003, eq. 5.9, times s . k), and V: above
 /// 0 where the ray along `direction` meets the plane in front of it.
+#[inline]
 fn mirrored(light: &Light, position: DVec3, direction: DVec3) -> Option<Functions> {
     let (plane, to_center) = (light.normal(), light.center - position);
     let (depth, w) = (to_center.dot(plane), direction.dot(plane));
