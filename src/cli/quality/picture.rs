@@ -55,7 +55,7 @@ impl Picture<'_> {
         let marks = self.marks(verdict, &shown);
         canvas.marks(&marks);
         let panel = Panel {
-            caption: format!("{}: {}", verdict.mesh.name, said(verdict, &marks)),
+            caption: format!("{}: {}", verdict.mesh.name, said(verdict, &marks, self.count)),
             rgba8: canvas.into_rgba8(),
             legend: Some((severities(verdict), legend(verdict))),
         };
@@ -137,13 +137,20 @@ fn lines(canvas: &mut Canvas, shown: &[Shown<'_>]) {
     }
 }
 
-/// What the numbers are.
-fn said(verdict: &Verdict<'_>, marks: &[Mark]) -> String {
-    let hollow = if marks.iter().all(|mark| mark.is_seen) { "" } else { " (hollow: hidden)" };
-    match verdict.over() {
-        0 => format!("none over its limits{hollow}"),
-        over => format!("{over} over their limits{hollow}"),
+/// How many exceed their limits, and what of the numbered ones is there.
+fn said(verdict: &Verdict<'_>, marks: &[Mark], count: usize) -> String {
+    let mut text = match verdict.over() {
+        0 => "none over its limits".to_owned(),
+        over => format!("{over} over their limits"),
+    };
+    let numbered = verdict.judged().count().min(count);
+    if marks.len() < numbered {
+        text += &format!(", {} of the worst {numbered} in the picture", marks.len());
     }
+    if marks.iter().any(|mark| !mark.is_seen) {
+        text += " (hollow: hidden)";
+    }
+    text
 }
 
 fn legend(verdict: &Verdict<'_>) -> String {
