@@ -15,6 +15,9 @@ pub const SHORT: usize = 3;
 /// Sine of the angle to the light below which a node's normal is parallel to it.
 const PARALLEL: f64 = 0.05;
 
+/// Part of a patch round a vertex without a tangent plane that is left out.
+const TIP: f64 = 0.1;
+
 /// Values at the nodes of one ptex face, `steps + 1` each way, u fastest.
 struct Face {
     steps: usize,
@@ -47,19 +50,33 @@ impl Grid {
             for k in 0..(steps + 1) * (steps + 1) {
                 let uv = [k % (steps + 1), k / (steps + 1)].map(|i| i as f64 / steps as f64);
                 let (patch, local) = surface.locate(ptex as u32, uv)?;
-                // At vertices without a tangent plane the field has as many values as there are ways in.
+                // At vertices without a tangent plane the field has as many values as there are ways in, and lines run into them side by
+                // side, which no grid tells apart.
                 let is_plane = surface.class(patch).is_none_or(|class| surface.classes()[class].has_tangent_plane());
                 // And where the normal is parallel to the light, d_s has all of them: lines end there, which no grid sees.
                 let jet = surface.evaluate(patch, local);
                 let is_parallel = field.method == Method::Highlight(HighlightKind::Signed)
                     && jet.normal.cross(field.light.axes[1]).length() < PARALLEL;
-                let is_defined = (is_plane || local != [0.0; 2]) && !is_parallel;
+                let is_defined = (is_plane || local[0].max(local[1]) > TIP) && !is_parallel;
                 values.push(field.at(surface, camera, patch, local).filter(|_| is_defined).map(|value| value.x));
                 positions.push(jet.position);
             }
             Some(Face { steps, values, positions })
         };
         Grid { faces: sizes.enumerate().map(face).collect(), diagonal: surface.diagonal() }
+    }
+
+    /// Steps of a face.
+    pub fn steps(&self, face: u32) -> usize {
+        self.faces[face as usize].as_ref().map_or(1, |face| face.steps)
+    }
+
+    /// Whether a place lies in a cell that is defined at its corners.
+    pub fn sees(&self, face: u32, uv: [f64; 2]) -> bool {
+        let Some(face) = &self.faces[face as usize] else { return false };
+        let [i, j] = uv.map(|x| ((x * face.steps as f64) as usize).min(face.steps - 1));
+        let node = |di: usize, dj: usize| (j + dj) * (face.steps + 1) + i + di;
+        values_at(face, [node(0, 0), node(1, 0), node(1, 1), node(0, 1)]).is_some()
     }
 
     /// All values, for a choice among them.

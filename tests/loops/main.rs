@@ -4,7 +4,7 @@ mod grid;
 #[path = "../common/random_mesh.rs"]
 mod random_mesh;
 
-use catoptric::curves;
+use catoptric::curves::{self, Curve};
 use catoptric::field::{Field, Light, Method, Scout};
 use catoptric::mesh::SubdivMesh;
 use catoptric::stam::LimitSurface;
@@ -54,18 +54,55 @@ fn scene(seed: u64) -> Option<Scene> {
 }
 
 impl Scene {
-    /// Lines that are longer than a few steps of a grid.
-    fn traced(&self, value: f64, steps: usize) -> Count {
-        let mut curves =
+    /// Lines that are longer than a few steps of a grid, as far as it sees them: without what lies in its undefined cells.
+    fn traced(&self, value: f64, grid: &Grid) -> Count {
+        let curves =
             curves::trace(&self.surface, &self.field, &self.camera, &[(0, value)], 1e-3 * self.surface.diagonal());
-        curves.retain(|curve| {
-            let place = curve.places[curve.places.len() / 2];
-            let jet = self.surface.evaluate_ptex(place.face, [place.u, place.v]).expect("no hole").1;
-            let step = 0.5 * (jet.du.length() + jet.dv.length()) / steps as f64;
-            curve.length() > SHORT as f64 * step
-        });
-        let closed = curves.iter().filter(|curve| curve.closed).count();
-        Count { open: curves.len() - closed, closed }
+        let mut counted = Count { open: 0, closed: 0 };
+        for curve in &curves {
+            let (pieces, is_whole) = self.seen(curve, grid);
+            let long = pieces.into_iter().filter(|&steps| steps > SHORT as f64).count();
+            match curve.closed && is_whole {
+                true => counted.closed += long,
+                false => counted.open += long,
+            }
+        }
+        counted
+    }
+
+    /// Lengths, in steps of the grid, of the parts of a curve that it sees, and whether that is all of it.
+    fn seen(&self, curve: &Curve, grid: &Grid) -> (Vec<f64>, bool) {
+        let mut places = curve.places.clone();
+        places.extend(curve.closed.then_some(curve.places[0]));
+        let mut parts = vec![0.0];
+        let mut is_whole = true;
+        let mut starts_in_sight = true;
+        for (k, pair) in places.windows(2).enumerate() {
+            let [a, b] = [pair[0], pair[1]];
+            // From face to face, only the points themselves are looked at.
+            let samples = if a.face == b.face { 32 } else { 1 };
+            for i in 0..samples {
+                let part = (f64::from(i) + 0.5) / f64::from(samples);
+                let at = [a.u + part * (b.u - a.u), a.v + part * (b.v - a.v)];
+                let at = if samples == 1 { [a.u, a.v] } else { at };
+                if grid.sees(a.face, at) {
+                    let jet = self.surface.evaluate_ptex(a.face, at).expect("no hole").1;
+                    let step = 0.5 * (jet.du.length() + jet.dv.length()) / grid.steps(a.face) as f64;
+                    let length = curve.points[k].distance(curve.points[(k + 1) % curve.points.len()]);
+                    *parts.last_mut().expect("there is one") += length / f64::from(samples) / step;
+                } else {
+                    starts_in_sight &= k + i as usize > 0;
+                    is_whole = false;
+                    parts.push(0.0);
+                }
+            }
+        }
+        if curve.closed && !is_whole && starts_in_sight {
+            // The start lies within a part.
+            let last = parts.pop().unwrap_or(0.0);
+            parts[0] += last;
+        }
+        (parts, is_whole)
     }
 }
 
@@ -85,8 +122,9 @@ fn judge(seed: u64) -> Option<Result<(usize, Count), String>> {
     let value = value + 1e-6 * (values[values.len() - 1] - values[0]).abs().min(1.0) * (0.5 + rng.unit());
     let mut found = Vec::new();
     for refined in [1, 2, 4, 8] {
-        let traced = scene.traced(value, STEPS * refined);
-        let counted = if refined == 1 { first.count(value) } else { grid(STEPS * refined).count(value) };
+        let finer = (refined > 1).then(|| grid(STEPS * refined));
+        let grid = finer.as_ref().unwrap_or(&first);
+        let (traced, counted) = (scene.traced(value, grid), grid.count(value));
         if counted == traced {
             return Some(Ok((refined, traced)));
         }
