@@ -185,6 +185,9 @@ impl Divider<'_> {
     /// Whether the cell need not be divided for a contour; draws the arcs that are in it.
     fn settle(&mut self, piece: &Piece, rect: Rect, model: &Model, candidate: &mut Candidate) -> bool {
         let contour = &self.wanted[candidate.wanted].contour;
+        if model.excludes(&contour.zero) {
+            return true;
+        }
         let sum = model.sum(&contour.zero);
         let valid = contour.valid.map(|weights| model.sum(&weights));
         let cell = Cell { rect, sum: &sum, valid: valid.as_ref() };

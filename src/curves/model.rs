@@ -55,6 +55,8 @@ impl Rect {
 #[derive(Debug)]
 pub(super) struct Model {
     bernstein: [Coefficients; 4],
+    /// Least and largest value that each function may have.
+    ranges: [[f64; 2]; 4],
     /// How far the stand-ins may be from the functions.
     error: Functions,
     /// The functions at the corners (0,0), (1,0), (0,1), (1,1).
@@ -104,7 +106,23 @@ impl Model {
         }
         // Rounding is no news.
         let error = std::array::from_fn(|c| SAFETY * error[c] + 8.0 * f64::EPSILON * size[c]);
-        Ok(Model { bernstein, error, corners })
+        Ok(Model::with(bernstein, error, corners))
+    }
+
+    fn with(bernstein: [Coefficients; 4], error: Functions, corners: [Functions; 4]) -> Model {
+        let ranges = std::array::from_fn(|c| range(bernstein[c].iter().copied(), error[c]));
+        Model { bernstein, ranges, error, corners }
+    }
+
+    /// Whether a weighted sum of the functions is not 0 anywhere, as far as their ranges tell.
+    pub fn excludes(&self, weights: &Functions) -> bool {
+        let (mut low, mut high) = (0.0, 0.0);
+        for (&weight, &[least, most]) in weights.iter().zip(&self.ranges) {
+            let (a, b) = (weight * least, weight * most);
+            low += a.min(b);
+            high += a.max(b);
+        }
+        low > 0.0 || high < 0.0
     }
 
     /// The same polynomials on the quarters of the rectangle, in the order of [`Rect::quarters`]; `None` where a function is undefined at
@@ -123,11 +141,8 @@ impl Model {
         let halves = self.bernstein.each_ref().map(|of| halves(of, N, 1).map(|half| self::halves(&half, 1, N)));
         Some(std::array::from_fn(|k| {
             let (i, j) = (k % 2, k / 2);
-            Model {
-                bernstein: std::array::from_fn(|c| halves[c][i][j]),
-                error: self.error,
-                corners: [corners[j][i], corners[j][i + 1], corners[j + 1][i], corners[j + 1][i + 1]],
-            }
+            let corners = [corners[j][i], corners[j][i + 1], corners[j + 1][i], corners[j + 1][i + 1]];
+            Model::with(std::array::from_fn(|c| halves[c][i][j]), self.error, corners)
         }))
     }
 
