@@ -98,6 +98,13 @@ fn meshes_that_no_surface_has() {
 }
 
 #[test]
+fn text_that_does_not_parse() {
+    let message = refusal("def Mesh \"m\"\n{\n    int[] faceVertexCounts = [4, oops]\n}\n");
+    assert!(message.starts_with("mesh.usda: not readable as USD (line 4: "), "{message}");
+    assert!(message.ends_with("); export the file again"), "{message}");
+}
+
+#[test]
 fn transforms_that_are_none() {
     assert_eq!(
         with("uniform token[] xformOpOrder = [\"xformOp:scale\"]"),

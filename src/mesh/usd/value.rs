@@ -96,6 +96,15 @@ impl Node<'_> {
     }
 }
 
+/// `error: WHAT --> FILE:LINE:COLUMN | EXCERPT`, as the text reader says it, without what the message has already.
+fn without_excerpt(text: &str) -> String {
+    let line = |place: &str| place.split(' ').next()?.rsplit(':').nth(1)?.parse::<u32>().ok();
+    match text.split_once(" --> ").and_then(|(what, place)| Some((what, line(place)?))) {
+        Some((what, line)) => format!("line {line}: {}", what.trim_start_matches("error: ")),
+        None => text.to_owned(),
+    }
+}
+
 /// An error of the reader and what caused it, as one line.
 pub(super) fn one_line(error: &dyn std::error::Error) -> String {
     let mut text = error.to_string();
@@ -108,7 +117,7 @@ pub(super) fn one_line(error: &dyn std::error::Error) -> String {
         cause = error.source();
     }
     let words: Vec<&str> = text.split_whitespace().collect();
-    let line = words.join(" ");
+    let line = without_excerpt(&words.join(" "));
     let cut: String = line.chars().filter(|c| !c.is_control()).take(200).collect();
     if cut.len() < line.len() { format!("{cut}...") } else { cut }
 }
