@@ -335,7 +335,7 @@ impl Shot<'_> {
 }
 
 /// What false colours of a field measure.
-fn legend(method: &Method) -> String {
+pub(super) fn legend(method: &Method) -> String {
     let unit = match method {
         Method::Sphere(_) | Method::Isophote => "degrees",
         Method::Curve(PlaneCurve::Grid(grid)) => {

@@ -102,7 +102,7 @@ impl Canvas {
     }
 
     /// Draws numbers beside their points, the first one nearest to its own, with a line to it; none covers another or a point, as
-    /// long as there is room.
+    /// long as there is room; then those that are seen cover hidden ones.
     pub fn marks(&mut self, marks: &[Mark]) {
         let size = dvec2(f64::from(self.pixmap.width()), f64::from(self.pixmap.height()));
         let points: Vec<DVec2> = marks.iter().map(|mark| mark.at).collect();
@@ -112,11 +112,14 @@ impl Canvas {
         for (mark, &middle) in marks.iter().zip(&middles) {
             self.lines([&Drawn { closed: false, points: vec![mark.at, middle] }], pen(mark));
         }
-        for mark in marks {
-            self.dot(mark.at, 4.5, mark.colour, mark.is_seen);
+        // Hidden ones first, and of all others the first one last: on top.
+        let mut order: Vec<usize> = (0..marks.len()).rev().collect();
+        order.sort_by_key(|&i| marks[i].is_seen);
+        for &i in &order {
+            self.dot(marks[i].at, 4.5, marks[i].colour, marks[i].is_seen);
         }
-        for ((mark, &middle), &extent) in marks.iter().zip(&middles).zip(&boxes) {
-            self.number(mark, middle - 0.5 * extent, extent);
+        for i in order {
+            self.number(&marks[i], middles[i] - 0.5 * boxes[i], boxes[i]);
         }
     }
 

@@ -23,7 +23,7 @@ const LINE: usize = 16;
 const LEGEND: usize = BAR + 6 + 2 * LINE;
 const BAR: usize = 14;
 
-/// A picture of panels in rows of two, all of the same size in pixels, and its own size. What does not fit is cut off.
+/// A picture of panels in rows of two, all of the same size in pixels, and its own size. Texts that do not fit end earlier.
 pub fn sheet(size: [u32; 2], panels: &[Panel]) -> ([u32; 2], Vec<u8>) {
     let [width, height] = size.map(|n| n as usize);
     let columns = panels.len().min(2);
@@ -88,6 +88,25 @@ pub(super) fn write_text(pixels: &mut [[u8; 4]], width: usize, [x, y]: [usize; 2
     }
 }
 
+/// The longest beginning of a text that fits into so many characters, whole clauses if possible, else whole words, and no open
+/// parenthesis.
+fn fitting(text: &str, most: usize) -> &str {
+    if text.chars().count() <= most {
+        return text;
+    }
+    let mut best = ("", false);
+    for (end, _) in text.match_indices(' ') {
+        let part = &text[..end];
+        let is_open = part.matches('(').count() > part.matches(')').count();
+        let trimmed = part.trim_end_matches([',', ';', ':']);
+        let is_clause = trimmed.len() < part.len() || text[end..].starts_with(" (");
+        if !is_open && trimmed.chars().count() <= most && (is_clause || !best.1) {
+            best = (trimmed, is_clause);
+        }
+    }
+    best.0
+}
+
 struct Page {
     width: usize,
     pixels: Vec<[u8; 4]>,
@@ -102,11 +121,10 @@ impl Page {
         }
     }
 
-    /// Writes one line, at most `width` pixels of it.
+    /// Writes one line, as much of it as `width` pixels hold.
     fn text(&mut self, at: [usize; 2], width: usize, text: &str) {
         let advance = get_raster_width(FontWeight::Regular, RasterHeight::Size16);
-        let fitting: String = text.chars().take(width / advance).collect();
-        write_text(&mut self.pixels, self.width, at, &fitting, INK);
+        write_text(&mut self.pixels, self.width, at, fitting(text, width / advance), INK);
     }
 
     /// A bar with the colours of a scale, its ticks, and what it measures.
@@ -118,6 +136,8 @@ impl Page {
             }
         }
         let advance = get_raster_width(FontWeight::Regular, RasterHeight::Size16);
+        // Where the last label ends.
+        let mut free = 0;
         for (value, label) in scale.ticks() {
             let at = (scale.place(value) * (width - 1) as f32).round() as usize;
             for row in y + BAR - 4..y + BAR + 3 {
@@ -126,7 +146,10 @@ impl Page {
             let long = label.len() * advance;
             // In the middle below its tick, but inside the panel.
             let left = at.saturating_sub(long / 2).min(width.saturating_sub(long));
-            self.text([x + left, y + BAR + 4], width - left.min(width), &label);
+            if left >= free && long <= width {
+                self.text([x + left, y + BAR + 4], long, &label);
+                free = left + long + advance / 2;
+            }
         }
         self.text([x, y + BAR + 6 + LINE], width, what);
     }
@@ -135,6 +158,22 @@ impl Page {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn texts_are_cut_between_clauses_and_words() {
+        let text = "car: 350 over their limits, 9 of the worst 20 in the picture (hollow: hidden)";
+        for (most, expected) in [
+            (100, text),
+            (70, "car: 350 over their limits, 9 of the worst 20 in the picture"),
+            (40, "car: 350 over their limits"),
+            (10, "car"),
+            (2, ""),
+        ] {
+            assert_eq!(fitting(text, most), expected);
+        }
+        assert_eq!(fitting("Times the limit (0.001 units, 2 %)", 20), "Times the limit");
+        assert_eq!(fitting("two words", 5), "two");
+    }
 
     #[test]
     fn panels_stand_where_they_belong() {

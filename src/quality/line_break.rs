@@ -1,7 +1,7 @@
 //! What a joint does to the lines of a field that cross it.
 
 use super::form::axes;
-use super::slope::{difference, slope, turn_deg, value};
+use super::slope::{blur, difference, slope, turn_deg, value};
 use crate::field::{Camera, Field};
 use crate::stam::Jet2;
 use glam::{DVec2, DVec3};
@@ -12,6 +12,7 @@ use glam::{DVec2, DVec3};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LineBreak {
     /// Difference of the field's first coordinate across the joint, in its units: of reflection lines, world units on the light plane.
+    /// 0 where rounding of the two sides explains it, which near the horizon of the light plane is much.
     pub jump: f64,
     /// The same in distances between lines ([`Light::spacing`](crate::field::Light::spacing)).
     pub lines: f64,
@@ -29,7 +30,7 @@ const KNOWN: f64 = 1e-3;
 
 impl LineBreak {
     /// Compares a field on the two sides of a joint, as [`Continuity::new`](super::Continuity::new) compares the sides. `None` where the field
-    /// is undefined on one of them. `rounding` as there.
+    /// is undefined on one of them, or would be but for rounding. `rounding` as there.
     pub fn new(
         field: &Field,
         camera: &Camera,
@@ -38,7 +39,9 @@ impl LineBreak {
         rounding: [f64; 2],
     ) -> Option<LineBreak> {
         let [own, other] = sides.map(|side| value(field, camera, side));
-        let jump = difference(&field.method, own?, other?)?.abs();
+        let apart = difference(&field.method, own?, other?)?.abs();
+        let [own, other] = [0, 1].map(|i| blur(field, camera, sides[i], rounding[i]));
+        let jump = if apart <= own? + other? { 0.0 } else { apart };
         let slope = |i: usize| slope(field, camera, sides[i], axes(sides[i], along)?, rounding[i]);
         let slopes = slope(0).zip(slope(1));
         // Across the joint in the direction in which values grow along it, if they do.

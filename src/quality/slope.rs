@@ -12,6 +12,36 @@ pub(super) fn value(field: &Field, camera: &Camera, jet: &Jet2) -> Option<DVec2>
     field.value(&Point { position, normal, sight: camera.sight(position), curvature })
 }
 
+/// How much of a field's first coordinate rounding may be, where curvatures may be off by `rounding`: over the width w of the patch that
+/// turns the normal by rounding w and moves the point by rounding w^2. `None` where the field is undefined at a point as near as that.
+pub(super) fn blur(field: &Field, camera: &Camera, jet: &Jet2, rounding: f64) -> Option<f64> {
+    let Jet { du, dv, normal, .. } = jet.first;
+    let width = du.length().max(dv.length());
+    let exact = value(field, camera, jet)?;
+    let mut most = 0.0f64;
+    for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
+        for sign in [rounding, -rounding] {
+            let (mut moved, mut turned) = (*jet, *jet);
+            moved.first.position += axis * sign * width * width;
+            turned.first.normal = (normal + axis * sign * width).try_normalize()?;
+            for near in [moved, turned] {
+                most = most.max(difference(&field.method, value(field, camera, &near)?, exact).unwrap_or(0.0).abs());
+            }
+        }
+    }
+    if field.method.reads_curvature() {
+        for sign in [rounding, -rounding] {
+            // All normal curvatures the same amount larger.
+            let mut bent = *jet;
+            bent.duu += normal * sign * du.dot(du);
+            bent.duv += normal * sign * du.dot(dv);
+            bent.dvv += normal * sign * dv.dot(dv);
+            most = most.max(difference(&field.method, value(field, camera, &bent)?, exact).unwrap_or(0.0).abs());
+        }
+    }
+    Some(most)
+}
+
 /// Difference of two values' first coordinates. `None` where they are not on the same sheet: at the edges between nearest lights.
 pub(super) fn difference(method: &Method, a: DVec2, b: DVec2) -> Option<f64> {
     match method {

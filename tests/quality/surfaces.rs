@@ -72,6 +72,24 @@ fn a_folded_plane_has_its_angle_and_nothing_else() {
     }
 }
 
+/// What counts as rounding of a jump is none on a fold of a billionth of a degree.
+#[test]
+fn small_folds_jump() {
+    for angle in [1e-9, 1e-6, 1e-3] {
+        let mesh = roof(angle);
+        let surface = LimitSurface::new(&mesh).expect("it has a surface");
+        let scout = Scout::new(&surface).expect("it has faces");
+        let camera = scout.camera([640, 480], DVec3::Z);
+        let field = scout.field(&Method::Reflection, &camera);
+        let reading = Some(Reading { field: &field, camera: &camera });
+        let quality = Quality::measure(&mesh, &surface, reading, &Limits::default());
+        let line = quality.features[0].extremes.line.expect("it is defined");
+        let per_degree = line.jump / angle;
+        assert!(line.jump > 0.0 && per_degree > 1e-3, "{angle}: {line:?}");
+        assert_eq!(quality.smooth.line.expect("it is defined").jump, 0.0);
+    }
+}
+
 /// z = k x^2, as a B-spline: i^2 becomes i^2 - 1/3 (the mean of its neighbours, weighted 1/6, 2/3, 1/6, is i^2 + 1/3).
 #[test]
 fn a_parabolic_cylinder_is_c2_with_its_own_curvature() {
@@ -148,6 +166,7 @@ fn every_mesh_is_as_smooth_as_it_must_be() {
         if let Some(line) = smooth.line {
             // Slopes are known to a thousandth of a radian each.
             assert!(line.turn_deg.unwrap_or(0.0) < 0.12, "{name}: {line:?}");
+            assert!(line.jump == 0.0 && line.lines == 0.0, "{name}: {line:?}");
             assert!(line.along.unwrap_or(0.0) < 1e-8 * surface.diagonal(), "{name}: {line:?}");
         }
         let line =

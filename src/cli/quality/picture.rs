@@ -3,9 +3,11 @@
 use super::Verdict;
 use crate::cli::Failure;
 use crate::cli::account::Account;
+use crate::cli::render::legend as field_legend;
 use crate::curves::{Curve, Look, Place};
+use crate::field::Pattern;
 use crate::gpu::{Gpu, TableLayout, View};
-use crate::output::{Canvas, Drawn, Mark, Panel, Pen, Scale, in_picture, sheet, write_png};
+use crate::output::{Canvas, Drawn, Mark, Panel, Pen, Scale, draw_legend, in_picture, sheet, write_png};
 use crate::quality::{Piece, Ranked, Subject};
 use crate::stam::LimitSurface;
 use crate::statistics::exact;
@@ -45,10 +47,15 @@ impl Picture<'_> {
             false => TableLayout::Auto,
         };
         let tables = account.time("tables", || gpu.upload_as(self.surface, layout))?;
-        let frame = gpu.render(&tables, self.view)?;
+        let mut frame = gpu.render(&tables, self.view)?;
         account.add(&frame.timings);
         let size = frame.size;
         let shown = account.time("hidden lines", || self.shown(verdict));
+        if let Pattern::Heat { range: [low, high] } = self.view.pattern {
+            // Before the picture fades, so that its colours are the legend's.
+            let scale = Scale::linear(low as f32, high as f32);
+            draw_legend(size, &mut frame.rgba8, &scale, &field_legend(&self.view.field.method));
+        }
         let mut canvas = Canvas::new(size, frame.rgba8)
             .ok_or_else(|| Failure::Bad("the picture's bytes do not match its size".to_owned()))?;
         canvas.fade(GROUND);
@@ -132,8 +139,11 @@ fn lines(canvas: &mut Canvas, shown: &[Shown<'_>]) {
         }
     }
     for shown in shown.iter().rev() {
-        if let (Subject::Vertex(_), Some(colour), Some((at, true))) = (shown.ranked.subject, shown.colour, shown.spot) {
-            canvas.dot(at, 3.0, colour, true);
+        if let (Subject::Vertex(_), Some((at, true))) = (shown.ranked.subject, shown.spot) {
+            match shown.colour {
+                Some(colour) => canvas.dot(at, 3.0, colour, true),
+                None => canvas.dot(at, 1.5, QUIET, true),
+            }
         }
     }
 }
