@@ -47,7 +47,7 @@ pub(super) enum Backend {
 
 #[derive(Debug, Args)]
 pub(super) struct EvalArgs {
-    /// Control mesh (.obj)
+    /// Control mesh (.obj, .usd, .usda, .usdc or .usdz)
     pub mesh: Option<PathBuf>,
     /// CSV file with the header face,u,v: ptex face, u and v in 0 to 1
     #[arg(long, value_name = "FILE")]
@@ -102,7 +102,7 @@ pub(super) struct VerifyArgs {
 
 #[derive(Debug, Args)]
 pub(super) struct GlintsArgs {
-    /// Control mesh (.obj)
+    /// Control mesh (.obj, .usd, .usda, .usdc or .usdz)
     pub mesh: Option<PathBuf>,
     /// A light point; give as many as there are
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true, required = true)]
@@ -123,7 +123,7 @@ pub(super) struct GlintsArgs {
 
 #[derive(Debug, Args)]
 pub(super) struct InfoArgs {
-    /// Control mesh (.obj)
+    /// Control mesh (.obj, .usd, .usda, .usdc or .usdz)
     pub mesh: Option<PathBuf>,
     /// Print JSON
     #[arg(long)]

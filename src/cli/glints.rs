@@ -22,7 +22,7 @@ pub(super) fn run(args: &GlintsArgs) -> Result<(), Failure> {
     let eye = match (args.eye, args.eye_direction) {
         (_, Some(direction)) => PathEnd::Direction(direction),
         (Some(eye), None) => PathEnd::Point(eye),
-        (None, None) => PathEnd::Point(fitted_eye(&surface, args.mesh.is_none()).ok_or_else(|| {
+        (None, None) => PathEnd::Point(fitted_eye(&surface, mesh.up, args.mesh.is_none()).ok_or_else(|| {
             Failure::of(&mesh, "no face has a limit surface, so no eye can be fitted; give --eye X,Y,Z")
         })?),
     };
@@ -33,12 +33,13 @@ pub(super) fn run(args: &GlintsArgs) -> Result<(), Failure> {
 }
 
 /// The eye of `render`'s default camera, whose picture is square.
-fn fitted_eye(surface: &LimitSurface, is_sample: bool) -> Option<DVec3> {
+fn fitted_eye(surface: &LimitSurface, up: Option<DVec3>, is_sample: bool) -> Option<DVec3> {
     const SIZE: [u32; 2] = [1024; 2];
     let scout = Scout::new(surface)?;
-    let default = scout.camera(SIZE, DVec3::Z);
+    let up = up.unwrap_or(DVec3::Z);
+    let default = scout.camera(SIZE, up);
     let direction = if is_sample { sample_rig().0 } else { default.eye - default.target };
-    Some(scout.camera_from(SIZE, DVec3::Z, direction, DEFAULT_FOV).eye)
+    Some(scout.camera_from(SIZE, up, direction, DEFAULT_FOV).eye)
 }
 
 fn nature(point: &PathPoint) -> &'static str {

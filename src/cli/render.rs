@@ -23,7 +23,7 @@ use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 pub(super) struct RenderArgs {
-    /// Control mesh (.obj)
+    /// Control mesh (.obj, .usd, .usda, .usdc or .usdz)
     pub(super) mesh: Option<PathBuf>,
     /// Picture to write: .png, or .exr with linear colour, position, normal, ptex parameters, field and residual
     #[arg(short, long, value_name = "FILE", default_value = "view.png")]
@@ -175,7 +175,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
         ))
     })?;
     args.frames.check_method(&rig.method())?;
-    let fitted = args.rig.fit(&rig, &scout, args.mesh.is_none())?;
+    let fitted = args.rig.fit(&rig.or_up(mesh.up), &scout, args.mesh.is_none())?;
     let pattern = PatternRig::fitted(pattern, &scout, &fitted);
     let name = rig.pattern.name_for(&fitted.method);
     let digest = mesh_digest(&mesh);

@@ -28,7 +28,7 @@ pub(super) struct RigArgs {
     /// Point in the middle of the picture [default: middle of the surface]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     target: Option<DVec3>,
-    /// Direction that points up [default: 0,0,1]
+    /// Direction that points up [default: the up axis of a USD file, else 0,0,1]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     up: Option<DVec3>,
     /// Lines of sight that meet in the eye, or parallel ones [default: perspective]

@@ -192,11 +192,15 @@ impl Tracer<'_> {
     fn is_invalid(&self, cell: &Cell, axis: usize) -> bool {
         const PROBES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
         let Some(valid) = cell.valid.filter(|valid| valid.range()[0] <= 0.0) else { return false };
-        let values = PROBES.map(|part| {
+        let [mut low, mut high] = [f64::INFINITY, f64::NEG_INFINITY];
+        for part in PROBES {
             let zero = cell.sum.line(axis, part).zero();
-            valid.value(if axis == 0 { [zero, part] } else { [part, zero] })
-        });
-        let [low, high] = values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], &v| [l.min(v), h.max(v)]);
+            let value = valid.value(if axis == 0 { [zero, part] } else { [part, zero] });
+            if value >= 0.0 {
+                return false;
+            }
+            (low, high) = (low.min(value), high.max(value));
+        }
         high + (high - low) + valid.error < 0.0
     }
 
@@ -305,7 +309,7 @@ pub(super) fn distance(p: DVec3, a: DVec3, b: DVec3) -> f64 {
 const NEAR: f64 = 1e-6;
 
 /// Product of two steps, over the range's square, beyond which rounding is larger.
-const MISSED: f64 = 1e-23;
+const MISSED: f64 = 1e-21;
 
 /// A zero of the first of two functions, which is monotone on a range, to the last digits, and the second one there; `positive`: at the
 /// range's start the first is above 0. From the zero of the polynomial that stands in for it by secants, which a tenth step or a third

@@ -104,7 +104,7 @@ pub enum MeshError {
     NotFound { at: Place },
     #[error("{at}: cannot be read ({error}); give a file that you may read")]
     Unreadable { at: Place, error: io::Error },
-    #[error("{at}: only .obj is read so far; export the mesh as OBJ")]
+    #[error("{at}: only .obj, .usd, .usda, .usdc and .usdz are read; export the mesh as one of these")]
     UnsupportedFormat { at: Place },
     #[error("{at}: the file is empty; export the mesh again")]
     EmptyFile { at: Place },
@@ -203,4 +203,36 @@ pub enum MeshError {
     TagIndex { at: Place, name: &'static str, index: i64 },
     #[error("{at}: {name} '{value}' is not supported; use {expected}")]
     TagValue { at: Place, name: &'static str, value: String, expected: &'static str },
+
+    #[error("{at}: the path is not UTF-8; rename the file")]
+    PathNotText { at: Place },
+    #[error("{at}: not readable as USD ({reason}); export the file again")]
+    UsdUnreadable { at: Place, reason: String },
+    #[error("{at}: a part of the stage is missing ({reason}); put the files that it refers to beside it")]
+    UsdIncomplete { at: Place, reason: String },
+    #[error("{at}: the stage has no Mesh prim that is visible and of purpose default or render; give one that has")]
+    NoMeshPrims { at: Place },
+    #[error("{at}: a Mesh prim without {name}; give it points, faceVertexCounts and faceVertexIndices")]
+    AttributeMissing { at: Place, name: &'static str },
+    #[error("{at}: {name} is not {expected}; give it the type that the schema says")]
+    AttributeType { at: Place, name: String, expected: &'static str },
+    #[error("{at}: {name} has {value}; use 0 and above")]
+    AttributeNegative { at: Place, name: &'static str, value: i32 },
+    #[error("{at}: {name} has {found} values; write {expected}")]
+    AttributeLength { at: Place, name: &'static str, found: usize, expected: String },
+    #[error("{at}: creaseLengths has {length}; a crease has at least 2 vertices")]
+    CreaseTooShort { at: Place, length: u32 },
+    #[error("{at}: subdivisionScheme {scheme} is not evaluated so far; use catmullClark")]
+    SchemeUnsupported { at: Place, scheme: String },
+    #[error("{at}: xformOpOrder has {op}, which is no transform of USD; correct it")]
+    TransformUnknown { at: Place, op: String },
+    #[error("{at}: xformOpOrder has {op}, which has no value; give it one or leave it out")]
+    TransformMissing { at: Place, op: String },
+    #[error("{at}: a PointInstancer, which is not read so far; make its instances prims")]
+    InstancerUnsupported { at: Place },
+    #[error(
+        "{at}: interpolateBoundary is none and that of other meshes is not, but a scene has one rule; \
+         make them agree"
+    )]
+    BoundaryMixed { at: Place },
 }

@@ -4,7 +4,7 @@
 //! run the same checks, because OpenSubdiv 3.5.0 crashes on some invalid meshes and silently accepts others.
 //!
 //! # Default boundary rule
-//! [`Boundary::default`] is `EdgeAndCorner`. An **OBJ file** without an `interpolateboundary` tag gets `EdgeOnly`
+//! [`Boundary::default`] is `EdgeAndCorner`, as in USD. An **OBJ file** without an `interpolateboundary` tag gets `EdgeOnly`
 //! instead, because that is what OpenSubdiv's own regression suite does with such a shape.
 
 mod error;
@@ -13,6 +13,7 @@ mod measure;
 mod obj;
 mod sample;
 mod tags;
+mod usd;
 mod validate;
 
 use std::path::Path;
@@ -24,20 +25,25 @@ pub use sample::sample;
 pub use validate::{MAX_COORDINATE, MAX_VALENCE};
 
 /// Extensions of the files that [`read`] reads, in lower case.
-pub const EXTENSIONS: [&str; 1] = ["obj"];
+pub const EXTENSIONS: [&str; 5] = ["obj", "usd", "usda", "usdc", "usdz"];
 
-/// Reads and validates a mesh file. The extension says the format; so far that is `.obj`.
+/// Reads and validates a mesh file. The extension says the format: OBJ (`.obj`) or USD (`.usd`, `.usda`, `.usdc`, `.usdz`).
 ///
 /// The mesh is named after the file's stem. Vertices and faces keep the order of the file, whatever groups or objects
 /// they are in, so a vertex that two groups share stays one vertex.
 ///
+/// All Mesh prims of a USD stage that are shown (visible, purpose default or render) become one mesh, in the order of
+/// the stage, with their points in world space and the stage's units. Values are those of the default time, or the first sample
+/// where there is no default; an attribute that is not there has its schema's fallback.
+///
 /// # Errors
 /// A file that cannot be read, that is not of its format, or whose mesh does not pass [`SubdivMesh::validate`].
-/// The message is one line: `file:line: what; what to do`.
+/// The message is one line: `file:line: what; what to do`, or `file: /Prim/Path: what; what to do`.
 pub fn read(path: &Path) -> Result<SubdivMesh, MeshError> {
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
     match extension.as_deref() {
         Some("obj") => obj::read(path),
+        Some("usd" | "usda" | "usdc" | "usdz") => usd::read(path),
         _ => Err(MeshError::UnsupportedFormat { at: Place::file(path) }),
     }
 }
@@ -106,4 +112,6 @@ pub struct SubdivMesh {
     pub boundary: Boundary,
     /// Decay of finite sharpness.
     pub creasing: Creasing,
+    /// Direction that points up, where the file says it (USD does); views are fitted to it.
+    pub up: Option<DVec3>,
 }

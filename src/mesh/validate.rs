@@ -85,7 +85,7 @@ impl SubdivMesh {
 
 /// As [`SubdivMesh::validate`], with places as the source names them.
 pub(super) fn check(mesh: &SubdivMesh, source: &Source<'_>) -> Result<(), MeshError> {
-    check_counts(mesh, source)?;
+    check_counts(mesh, &source.whole())?;
     check_points(mesh, source)?;
     check_faces(mesh, source)?;
     check_duplicates(mesh, source)?;
@@ -94,20 +94,20 @@ pub(super) fn check(mesh: &SubdivMesh, source: &Source<'_>) -> Result<(), MeshEr
     check_holes(mesh, source)
 }
 
-fn check_counts(mesh: &SubdivMesh, source: &Source<'_>) -> Result<(), MeshError> {
-    let at = source.whole();
+/// Whether the numbers of vertices and faces agree, and OpenSubdiv can count them.
+pub(super) fn check_counts(mesh: &SubdivMesh, at: &Place) -> Result<(), MeshError> {
     if mesh.points.is_empty() {
-        return Err(MeshError::NoVertices { at });
+        return Err(MeshError::NoVertices { at: at.clone() });
     }
     if mesh.face_sizes.is_empty() {
-        return Err(MeshError::NoFaces { at });
+        return Err(MeshError::NoFaces { at: at.clone() });
     }
-    check_limit("vertices", mesh.points.len(), &at)?;
-    check_limit("face vertices", mesh.face_vertices.len(), &at)?;
+    check_limit("vertices", mesh.points.len(), at)?;
+    check_limit("face vertices", mesh.face_vertices.len(), at)?;
     let expected = mesh.face_sizes.iter().map(|&n| u64::from(n)).sum();
     let found = mesh.face_vertices.len();
     if expected != found as u64 {
-        return Err(MeshError::FaceSizesDisagree { at, expected, found });
+        return Err(MeshError::FaceSizesDisagree { at: at.clone(), expected, found });
     }
     Ok(())
 }

@@ -133,6 +133,13 @@ impl Rig {
         self.over(base)
     }
 
+    /// With this direction up where the rig names none: that of the mesh.
+    #[must_use]
+    pub fn or_up(&self, up: Option<DVec3>) -> Rig {
+        let camera = CameraRig { up: self.camera.up.or(up), ..self.camera.clone() };
+        Rig { camera, ..self.clone() }
+    }
+
     /// The rig for a surface, fitted where it leaves something open. `habit`: direction from the object to the eye, and
     /// light for reflections, that are used instead of fitted ones where the rig and its preset have none.
     ///

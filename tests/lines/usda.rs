@@ -11,8 +11,8 @@ const FORMAT: LinesFormat = LinesFormat::Usda { meters_per_unit: 0.001 };
 
 fn get<T>(prim: &Prim, name: &str) -> T
 where
-    T: TryFrom<sdf::Value>,
-    T::Error: std::error::Error + Send + Sync + 'static,
+    T: sdf::FromValue,
+    T::Error: Into<openusd::Error>,
 {
     let found = prim.attribute(name).get::<T>();
     found.expect("it has its type").unwrap_or_else(|| panic!("{name} is there"))
@@ -78,14 +78,14 @@ fn scopes_and_curves_come_back() {
         let metadata = |name: &str| stage.stage_metadata(name).expect("readable").expect("it is there");
         assert_eq!(metadata("metersPerUnit"), sdf::Value::Double(0.001));
         assert_eq!(metadata("upAxis"), sdf::Value::Token(tf::Token::from("Z")));
-        let root = stage.prim("/lines");
+        let root = stage.prim("/lines").expect("a path");
         let gf::Vec3d { x, y, z } = get(&root, "xformOp:translate");
         let middle = DVec3::new(x, y, z);
         let names: Vec<String> =
             root.child_names().expect("readable").iter().map(|name| name.as_str().to_owned()).collect();
         assert_eq!(names, GROUPS.map(|(name, ..)| name));
         for (name, light, value) in GROUPS {
-            let scope = stage.prim(format!("/lines/{name}").as_str());
+            let scope = stage.prim(format!("/lines/{name}").as_str()).expect("a path");
             assert_eq!(get::<i32>(&scope, "catoptric:light"), light);
             assert_eq!(get::<f64>(&scope, "catoptric:value"), value);
             let (closed, open): (Vec<&Curve>, Vec<&Curve>) =
@@ -94,7 +94,7 @@ fn scopes_and_curves_come_back() {
             for (child, wrap, curves) in [("open", "nonperiodic", open), ("closed", "periodic", closed)] {
                 if !curves.is_empty() {
                     children += 1;
-                    let prim = stage.prim(format!("/lines/{name}/{child}").as_str());
+                    let prim = stage.prim(format!("/lines/{name}/{child}").as_str()).expect("a path");
                     check(&prim, wrap, &curves, middle, diagonal);
                 }
             }

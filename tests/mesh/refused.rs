@@ -25,9 +25,12 @@ fn a_folder_in_place_of_a_file() {
 
 #[test]
 fn another_format() {
-    for name in ["car.fbx", "car.usdz", "car", "obj"] {
+    for name in ["car.fbx", "car.usdx", "car", "obj"] {
         let message = mesh::read(Path::new(name)).unwrap_err().to_string();
-        assert_eq!(message, format!("{name}: only .obj is read so far; export the mesh as OBJ"));
+        assert_eq!(
+            message,
+            format!("{name}: only .obj, .usd, .usda, .usdc and .usdz are read; export the mesh as one of these")
+        );
     }
 }
 

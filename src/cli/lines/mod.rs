@@ -25,7 +25,7 @@ const LEAST_TOLERANCE: f64 = 1e-12;
 
 #[derive(Debug, Args)]
 pub(super) struct LinesArgs {
-    /// Control mesh (.obj)
+    /// Control mesh (.obj, .usd, .usda, .usdc or .usdz)
     mesh: Option<PathBuf>,
     /// File to write: .svg (the picture), .dxf, .obj, .usda or .json (in space) [default: JSON on standard output]
     #[arg(short, long, value_name = "FILE")]
@@ -165,7 +165,7 @@ pub(super) fn run(args: &LinesArgs) -> Result<(), Failure> {
             "--tolerance {tolerance:e} is below rounding here; give {least:.0e} or more"
         )));
     }
-    let mut fitted = args.rig.fit(&rig, &scout, args.mesh.is_none())?;
+    let mut fitted = args.rig.fit(&rig.or_up(mesh.up), &scout, args.mesh.is_none())?;
     let camera = fitted.camera;
     let mut field = fitted.field();
     let family = account.time("lights", || args.family.family(&scout, &camera, &mut field));

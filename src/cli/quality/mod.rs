@@ -23,7 +23,7 @@ use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub(super) struct QualityArgs {
-    /// Control mesh (.obj)
+    /// Control mesh (.obj, .usd, .usda, .usdc or .usdz)
     mesh: Option<PathBuf>,
     /// Picture to write (.png): the field, creases and vertices coloured by how far they exceed their limits, the worst numbered
     #[arg(short, long, value_name = "FILE")]
@@ -163,7 +163,7 @@ pub(super) fn run(args: &QualityArgs) -> Result<(), Failure> {
         let what = "no face has a limit surface (holes, or boundary rule none); nothing to measure";
         Failure::Bad(format!("{}: {what}", mesh.name))
     })?;
-    let fitted = args.rig.fit(&rig, &scout, args.mesh.is_none())?;
+    let fitted = args.rig.fit(&rig.or_up(mesh.up), &scout, args.mesh.is_none())?;
     let (camera, field) = (fitted.camera, fitted.field());
     let pattern = PatternRig::fitted(pattern, &scout, &fitted);
     let name = rig.pattern.name_for(&fitted.method);

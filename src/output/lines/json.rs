@@ -6,6 +6,7 @@
 
 use super::Lines;
 use crate::curves::Curve;
+use rayon::prelude::*;
 use serde::Serialize;
 use serde::ser::{SerializeSeq, Serializer};
 use std::io::{Result, Write};
@@ -34,14 +35,23 @@ fn params<S: Serializer>(curve: &&Curve, to: S) -> std::result::Result<S::Ok, S:
     list.end()
 }
 
+/// Curves whose texts are made at once, in parallel.
+const AT_ONCE: usize = 1024;
+
 /// A line a curve, numbers in as few digits as bring them back.
 pub(super) fn write(lines: &Lines<'_>, out: &mut dyn Write) -> Result<()> {
     let (field, made_by) = (serde_json::to_string(lines.field)?, serde_json::to_string(lines.made_by)?);
     write!(out, "{{\"field\":{field},\n\"made_by\":{made_by},\n\"curves\":[")?;
-    for (i, curve) in lines.curves.iter().enumerate() {
-        out.write_all(if i == 0 { b"\n" } else { b",\n" })?;
+    let text = |curve: &Curve| {
         let Curve { value, light, closed, .. } = *curve;
-        serde_json::to_writer(&mut *out, &Record { value, light, closed, points: curve, params: curve })?;
+        serde_json::to_vec(&Record { value, light, closed, points: curve, params: curve })
+    };
+    for (i, some) in lines.curves.chunks(AT_ONCE).enumerate() {
+        let texts: Vec<_> = some.par_iter().map(text).collect();
+        for (k, text) in texts.into_iter().enumerate() {
+            out.write_all(if i + k == 0 { b"\n" } else { b",\n" })?;
+            out.write_all(&text?)?;
+        }
     }
     out.write_all(b"\n]}\n")
 }

@@ -1,0 +1,128 @@
+//! One Mesh prim as a control mesh. Where an attribute has no value, the fallback of `UsdGeomMesh` counts.
+
+use glam::{DMat4, DVec3};
+
+use super::value::Node;
+use crate::mesh::validate::{Source, check};
+use crate::mesh::{Boundary, Corner, Crease, MeshError, SubdivMesh};
+
+/// Reads and validates the mesh, with its points where `world` puts them.
+pub(super) fn read(node: &Node<'_>, world: DMat4) -> Result<SubdivMesh, MeshError> {
+    scheme(node)?;
+    let points = node.required("points", node.points("points")?)?;
+    let face_sizes = node.required("faceVertexCounts", node.indices("faceVertexCounts")?)?;
+    let face_vertices = node.required("faceVertexIndices", node.indices("faceVertexIndices")?)?;
+    // What is not finite stays what it is, for the message.
+    let place = |point: DVec3| if point.is_finite() { world.project_point3(point) } else { point };
+    let mut mesh = SubdivMesh {
+        name: node.source.to_owned(),
+        points: points.into_iter().map(place).collect(),
+        face_sizes,
+        face_vertices,
+        creases: creases(node)?,
+        corners: corners(node)?,
+        holes: node.indices("holeIndices")?.unwrap_or_default(),
+        boundary: boundary(node)?,
+        ..SubdivMesh::default()
+    };
+    check(&mesh, &Source { name: node.source, lines: None, first_vertex: 0 })?;
+    triangle_rule(node, &mesh)?;
+    // A transform that mirrors turns the inside out once more.
+    if is_left_handed(node)? != (world.determinant() < 0.0) {
+        turn(&mut mesh);
+    }
+    Ok(mesh)
+}
+
+fn scheme(node: &Node<'_>) -> Result<(), MeshError> {
+    match node.token("subdivisionScheme")?.as_deref() {
+        None | Some("catmullClark") => Ok(()),
+        Some(scheme) => Err(MeshError::SchemeUnsupported { at: node.place(), scheme: scheme.to_owned() }),
+    }
+}
+
+fn refused(node: &Node<'_>, name: &'static str, value: &str, expected: &'static str) -> MeshError {
+    MeshError::TagValue { at: node.place(), name, value: value.to_owned(), expected }
+}
+
+fn boundary(node: &Node<'_>) -> Result<Boundary, MeshError> {
+    let name = "interpolateBoundary";
+    match node.token(name)?.as_deref() {
+        None | Some("edgeAndCorner") => Ok(Boundary::EdgeAndCorner),
+        Some("edgeOnly") => Ok(Boundary::EdgeOnly),
+        Some("none") => Ok(Boundary::None),
+        Some(other) => Err(refused(node, name, other, "none, edgeOnly or edgeAndCorner")),
+    }
+}
+
+fn is_left_handed(node: &Node<'_>) -> Result<bool, MeshError> {
+    match node.token("orientation")?.as_deref() {
+        None | Some("rightHanded") => Ok(false),
+        Some("leftHanded") => Ok(true),
+        Some(other) => Err(refused(node, "orientation", other, "rightHanded or leftHanded")),
+    }
+}
+
+/// The rule for triangles: another one than Catmull and Clark's matters only where there are any.
+fn triangle_rule(node: &Node<'_>, mesh: &SubdivMesh) -> Result<(), MeshError> {
+    let name = "triangleSubdivisionRule";
+    match node.token(name)?.as_deref() {
+        None | Some("catmullClark") => Ok(()),
+        Some("smooth") if !mesh.face_sizes.contains(&3) => Ok(()),
+        Some(other) => Err(refused(node, name, other, "catmullClark, or smooth for meshes without triangles")),
+    }
+}
+
+/// Turns all faces over; each keeps its first vertex, as in OpenSubdiv's `isLeftHanded`.
+fn turn(mesh: &mut SubdivMesh) {
+    let mut rest = mesh.face_vertices.as_mut_slice();
+    for &size in &mesh.face_sizes {
+        let (face, more) = rest.split_at_mut(size as usize);
+        face[1..].reverse();
+        rest = more;
+    }
+}
+
+/// Creases are chains of vertices, with a sharpness a chain or a sharpness an edge.
+fn creases(node: &Node<'_>) -> Result<Vec<Crease>, MeshError> {
+    let indices = node.indices("creaseIndices")?.unwrap_or_default();
+    let lengths = node.indices("creaseLengths")?.unwrap_or_default();
+    let sharpness = node.floats("creaseSharpnesses")?;
+    let wrong = |name, found, expected| MeshError::AttributeLength { at: node.place(), name, found, expected };
+    if let Some(&length) = lengths.iter().find(|&&length| length < 2) {
+        return Err(MeshError::CreaseTooShort { at: node.place(), length });
+    }
+    let total: u64 = lengths.iter().map(|&length| u64::from(length)).sum();
+    if total != indices.len() as u64 {
+        let expected = format!("{total}, the sum of creaseLengths");
+        return Err(wrong("creaseIndices", indices.len(), expected));
+    }
+    let edges = indices.len() - lengths.len();
+    let a_chain = sharpness.len() == lengths.len();
+    if !a_chain && sharpness.len() != edges {
+        let expected = format!("{}, one for each crease, or {edges}, one for each edge", lengths.len());
+        return Err(wrong("creaseSharpnesses", sharpness.len(), expected));
+    }
+    let mut creases = Vec::with_capacity(edges);
+    let mut rest = indices.as_slice();
+    for (i, &length) in lengths.iter().enumerate() {
+        let (chain, more) = rest.split_at(length as usize);
+        for pair in chain.windows(2) {
+            let at = if a_chain { i } else { creases.len() };
+            creases.push(Crease { vertices: [pair[0], pair[1]], sharpness: sharpness[at] });
+        }
+        rest = more;
+    }
+    Ok(creases)
+}
+
+fn corners(node: &Node<'_>) -> Result<Vec<Corner>, MeshError> {
+    let indices = node.indices("cornerIndices")?.unwrap_or_default();
+    let sharpness = node.floats("cornerSharpnesses")?;
+    if sharpness.len() != indices.len() {
+        let expected = format!("{}, one for each of cornerIndices", indices.len());
+        let (at, name, found) = (node.place(), "cornerSharpnesses", sharpness.len());
+        return Err(MeshError::AttributeLength { at, name, found, expected });
+    }
+    Ok(indices.into_iter().zip(sharpness).map(|(vertex, sharpness)| Corner { vertex, sharpness }).collect())
+}
