@@ -27,14 +27,23 @@ impl Spread {
     }
 }
 
-/// A number of two or three digits, as people read them: 1.2e-5, 0.034, 5.67, 89.
+/// A number of two or three digits, as people read them: 1.2e-5, 0.034, 5.67, 89; whole numbers below a million in full.
 pub fn short(x: f64) -> String {
     match x.abs() {
         0.0 => "0".to_owned(),
         size if size < 1e-3 => format!("{x:.1e}"),
         size if size < 0.0995 => format!("{x:.3}"),
         size if size < 9.95 => format!("{x:.2}"),
-        _ => format!("{x:.0}"),
+        size if size < 999_999.5 => format!("{x:.0}"),
+        _ => format!("{x:.1e}"),
+    }
+}
+
+/// A number in as many digits as it takes to read it back, very small and large ones with an exponent: 0.001, 2, 1e-12.
+pub fn exact(x: f64) -> String {
+    match x.abs() {
+        size if size != 0.0 && !(1e-5..1e9).contains(&size) => format!("{x:e}"),
+        _ => x.to_string(),
     }
 }
 
@@ -57,8 +66,10 @@ mod tests {
 
     #[test]
     fn numbers_are_short() {
-        let texts = [0.0, 1.23e-5, 0.0336, 0.456, 9.0, 144.4, f64::INFINITY].map(short);
-        assert_eq!(texts, ["0", "1.2e-5", "0.034", "0.46", "9.00", "144", "inf"]);
+        let texts = [0.0, 1.23e-5, 0.0336, 0.456, 9.0, 144.4, 999_999.4, 999_999.5, -3.2e307, f64::INFINITY].map(short);
+        assert_eq!(texts, ["0", "1.2e-5", "0.034", "0.46", "9.00", "144", "999999", "1.0e6", "-3.2e307", "inf"]);
+        let texts = [0.0, 1e-12, 0.001, 2.0, 123_456.75, 1.25e300].map(exact);
+        assert_eq!(texts, ["0", "1e-12", "0.001", "2", "123456.75", "1.25e300"]);
     }
 
     #[test]

@@ -38,7 +38,7 @@ pub enum Spot {
 
 /// The control mesh as its ptex faces see it.
 pub(super) struct Control<'a> {
-    mesh: &'a SubdivMesh,
+    pub mesh: &'a SubdivMesh,
     /// First corner of each face.
     offsets: Vec<u32>,
     /// Control face of each ptex face, and which quadrant of it.
@@ -71,16 +71,22 @@ impl Control<'_> {
         control
     }
 
-    fn corners(&self, face: u32) -> &[u32] {
+    /// Vertices of a face.
+    pub fn corners(&self, face: u32) -> &[u32] {
         let [face, size] = [face as usize, self.mesh.face_sizes[face as usize] as usize];
         let first = self.offsets[face] as usize;
         &self.mesh.face_vertices[first..first + size]
     }
 
     /// The edge of a face from its corner `k` on.
-    fn edge(&self, face: u32, k: u32) -> [u32; 2] {
+    pub fn edge(&self, face: u32, k: u32) -> [u32; 2] {
         let corners = self.corners(face);
         ordered([0, 1].map(|step| corners[(k as usize + step) % corners.len()]))
+    }
+
+    /// Control face of a patch.
+    pub fn face(&self, patch: &Patch) -> u32 {
+        self.ptex[patch.ptex as usize][0]
     }
 
     /// The line that a patch's local edge lies on.
@@ -129,18 +135,5 @@ impl Control<'_> {
     /// Sharpness of an edge, 0 where it has none.
     pub fn sharpness(&self, edge: [u32; 2]) -> f32 {
         self.sharpness.get(&edge).copied().unwrap_or(0.0)
-    }
-
-    /// Edges that several faces with a surface share.
-    pub fn shared_edges(&self) -> Vec<[u32; 2]> {
-        let hole = |face: usize| self.mesh.holes.contains(&(face as u32));
-        let faces = (0..self.mesh.face_count()).filter(|&face| !hole(face)).map(|face| face as u32);
-        let sides = faces.flat_map(|face| (0..self.mesh.face_sizes[face as usize]).map(move |k| (face, k)));
-        let mut edges: Vec<[u32; 2]> = sides.map(|(face, k)| self.edge(face, k)).collect();
-        edges.sort_unstable();
-        let mut shared: Vec<[u32; 2]> =
-            edges.windows(2).filter(|pair| pair[0] == pair[1]).map(|pair| pair[0]).collect();
-        shared.dedup();
-        shared
     }
 }

@@ -43,11 +43,11 @@ impl Break {
 }
 
 impl Limits {
-    /// How many times its limit each figure is. Without a tangent plane the angle is infinitely many times its limit, and there is no
-    /// curvature to compare.
+    /// How many times its limit each figure is, at most [`f64::MAX`]. Only without a tangent plane the angle is infinitely many times its
+    /// limit, and there is no curvature to compare.
     pub fn ratios(&self, gap: f64, angle_deg: Option<f64>, difference: Option<f64>) -> [(Break, f64); 3] {
         // A limit of 0 allows 0.
-        let ratio = |value: f64, limit: f64| if value == 0.0 { 0.0 } else { value / limit };
+        let ratio = |value: f64, limit: f64| if value == 0.0 { 0.0 } else { (value / limit).min(f64::MAX) };
         [
             (Break::Gap, ratio(gap, self.gap)),
             (Break::Angle, angle_deg.map_or(f64::INFINITY, |angle| ratio(angle, self.angle_deg))),

@@ -19,6 +19,7 @@ mod joint;
 mod limits;
 mod line_break;
 mod ranking;
+mod sheets;
 mod slope;
 mod vertex;
 
@@ -60,8 +61,20 @@ pub struct Quality {
     pub smooth_joints: usize,
     /// Extraordinary vertices.
     pub vertices: Vec<Vertex>,
-    /// Edges of the control mesh that several faces share, but along which nothing was compared: they are not manifold.
-    pub unjudged_edges: Vec<[u32; 2]>,
+    /// Where nothing was compared.
+    pub unjudged: Unjudged,
+}
+
+/// Where faces of the control mesh meet, but nothing was compared. Edges have the lower vertex first; holes do not count as faces.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Unjudged {
+    /// Edges that several faces share, of which at most one has a surface: the boundary rule is none.
+    pub edges_without_surface: Vec<[u32; 2]>,
+    /// Edges that several faces with a surface share, but not as a manifold: three or more of them, or two that run along it in the same
+    /// direction.
+    pub nonmanifold_edges: Vec<[u32; 2]>,
+    /// Vertices at which sheets meet that share no edge there, and of which several have a surface.
+    pub nonmanifold_vertices: Vec<u32>,
 }
 
 impl Quality {
@@ -78,14 +91,12 @@ impl Quality {
         let gauge = Gauge { surface, control: &control, limits, reading, coordinate };
         let Tally { smooth, smooth_pieces, pieces, mut edges } = gauge.tally(&adjacency);
         edges.sort_unstable();
-        let mut unjudged = control.shared_edges();
-        unjudged.retain(|edge| edges.binary_search(edge).is_err());
         Quality {
             features: feature::features(&control, &pieces),
             smooth,
             smooth_joints: smooth_pieces,
             vertices: vertex::vertices(surface, &control, &adjacency, reading, coordinate),
-            unjudged_edges: unjudged,
+            unjudged: control.unjudged(surface, &edges),
         }
     }
 }

@@ -3,9 +3,11 @@
 use super::control::{Control, Spot};
 use super::form::{Form, axes};
 use super::joint::{on_edge, place, rounding};
+use super::sheets::Fans;
 use super::slope::{slope, turn_deg};
 use super::{Break, Limits, Reading};
 use crate::curves::Place;
+use crate::osd::INFINITE_SHARPNESS;
 use crate::patch::{Adjacency, PatchKind};
 use crate::stam::LimitSurface;
 use crate::statistics::angle_deg;
@@ -59,7 +61,7 @@ pub struct Vertex {
     pub spot: Spot,
     /// Its rule.
     pub kind: PatchKind,
-    /// Faces round it, in this sector.
+    /// Faces with a surface round it, in this sector.
     pub faces: usize,
     /// Its patches.
     pub wedges: Vec<Wedge>,
@@ -98,7 +100,9 @@ impl Vertex {
 }
 
 /// The patches of each sector of each extraordinary vertex.
-fn sectors(surface: &LimitSurface, adjacency: &Adjacency) -> Vec<Vec<Wedge>> {
+///
+/// Patches belong together that meet along an edge, and those at a control vertex between which only faces without a surface lie.
+fn sectors(surface: &LimitSurface, control: &Control<'_>, adjacency: &Adjacency) -> Vec<Vec<Wedge>> {
     let irregular: Vec<usize> = (0..surface.patches().len()).filter(|&patch| surface.class(patch).is_some()).collect();
     let mut groups: BTreeMap<usize, usize> = irregular.iter().map(|&patch| (patch, patch)).collect();
     fn root(groups: &mut BTreeMap<usize, usize>, mut patch: usize) -> usize {
@@ -116,6 +120,26 @@ fn sectors(surface: &LimitSurface, adjacency: &Adjacency) -> Vec<Vec<Wedge>> {
             let meets = on_edge(neighbour.edge, neighbour.other[end]) == [0.0; 2] && surface.class(other).is_some();
             if meets && !neighbour.sharp {
                 let [a, b] = [patch, other].map(|patch| root(&mut groups, patch));
+                groups.insert(a.max(b), a.min(b));
+            }
+        }
+    }
+    let mut spots: BTreeMap<Spot, Vec<usize>> = BTreeMap::new();
+    for &patch in &irregular {
+        spots.entry(control.spot(&surface.patches()[patch])).or_default().push(patch);
+    }
+    spots.retain(|spot, patches| {
+        let first = root(&mut groups, patches[0]);
+        matches!(spot, Spot::Vertex(_)) && patches.iter().any(|&patch| root(&mut groups, patch) != first)
+    });
+    let fans = Fans::new(control, |vertex| spots.contains_key(&Spot::Vertex(vertex)));
+    for (spot, patches) in &spots {
+        let Spot::Vertex(vertex) = *spot else { continue };
+        for sector in fans.at(vertex, |edge| control.sharpness(edge) < INFINITE_SHARPNESS) {
+            let inside = patches.iter().filter(|&&patch| sector.contains(&control.face(&surface.patches()[patch])));
+            let inside: Vec<usize> = inside.copied().collect();
+            for pair in inside.windows(2) {
+                let [a, b] = [pair[0], pair[1]].map(|patch| root(&mut groups, patch));
                 groups.insert(a.max(b), a.min(b));
             }
         }
@@ -167,7 +191,7 @@ pub(super) fn vertices(
             growth,
         }
     };
-    let mut found: Vec<Vertex> = sectors(surface, adjacency).into_par_iter().map(vertex).collect();
+    let mut found: Vec<Vertex> = sectors(surface, control, adjacency).into_par_iter().map(vertex).collect();
     found.sort_by_key(|vertex| (vertex.spot, vertex.wedges[0].patch));
     found
 }

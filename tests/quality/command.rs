@@ -2,7 +2,7 @@
 
 use catoptric::field::{Method, Scout};
 use catoptric::mesh;
-use catoptric::quality::{Limits, Quality, Reading, Subject};
+use catoptric::quality::{Limits, Line, Quality, Reading, Subject};
 use catoptric::stam::LimitSurface;
 use glam::DVec3;
 use serde_json::Value;
@@ -134,6 +134,8 @@ fn json_is_what_the_library_measures() {
                     close(&place["line"]["turn_deg"], line.and_then(|line| line.turn_deg), "turn");
                     close(&place["radius"], feature.radius.and_then(finite).map(|radius| 10.0 * radius), "radius");
                     let chain = feature.chain.as_ref().expect("a chain");
+                    let Line::Edge(edge) = feature.line else { panic!("creases are edges") };
+                    assert_eq!(place["lies_on"]["edge"], serde_json::json!(edge));
                     assert_eq!(place["vertices"].as_array().map(Vec::len), Some(chain.vertices.len()));
                 }
                 Subject::Vertex(vertex) => {
@@ -155,6 +157,39 @@ fn json_is_what_the_library_measures() {
         close(&json["smooth_joints"]["gap"], Some(10.0 * quality.smooth.gap), "smooth gap");
         assert_eq!(json["smooth_joints"]["joints"], quality.smooth_joints);
     }
+}
+
+/// However small the limits, only what has no tangent plane is infinitely many times above them; numbers are short, and smooth lines have
+/// their names in the JSON too.
+#[test]
+fn tiny_limits_are_exceeded_by_finite_multiples() {
+    let tiny = ["--gap", "1e-12", "--angle", "1e-12", "--curvature", "1e-12", "--mm-per-unit", "1e30"];
+    let (code, out, json) = run("ngon_at_crease", &tiny);
+    assert_eq!(code, Some(1));
+    let mut lines = 0;
+    for place in places(&json) {
+        assert!(place["severity"].is_number() || place["tangent_plane"] == false, "{place}");
+        if place["kind"] == "smooth" {
+            let on = place["lies_on"].as_object().expect("a line");
+            assert!(on.len() == 1 && ["edge", "spoke", "inside_ptex_face"].iter().any(|key| on.contains_key(*key)));
+            lines += 1;
+        }
+    }
+    assert!(lines > 2 && !out.contains("no plane"), "{out}");
+    assert!(out.lines().all(|line| line.len() < 160), "{out}");
+    assert!(out.contains("limits: gap 1e-12 mm, angle 1e-12 degrees, curvature 1e-12 %"), "{out}");
+}
+
+/// Edges without surfaces on both sides, edges that are not manifold and vertices that are not are told apart.
+#[test]
+fn what_is_not_judged_is_said() {
+    let (_, out, json) = run("boundary_none", &[]);
+    let count = |json: &Value, key: &str| json["unjudged"][key].as_array().map(Vec::len);
+    assert!(out.contains("\n12 edges not judged: without surfaces on two sides (boundary rule none)\n"), "{out}");
+    assert_eq!((count(&json, "edges_without_surface"), count(&json, "nonmanifold_edges")), (Some(12), Some(0)));
+    let (_, out, json) = run("bow_tie", &[]);
+    assert!(out.contains("\n1 vertex not judged: not manifold: sheets that share no edge meet there\n"), "{out}");
+    assert_eq!(json["unjudged"]["nonmanifold_vertices"], serde_json::json!([8]));
 }
 
 /// Rows are as many as asked for, and columns stand under one another.
@@ -214,10 +249,13 @@ fn bad_input_is_one_line_and_leaves_nothing() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     for (args, part) in [
         (&["--gap", "-0.1"][..], "--gap"),
-        (&["--angle", "nan"], "give a number, 0 or above"),
-        (&["--curvature", "inf"], "give a number, 0 or above"),
+        (&["--gap", "0"], "give a number, 1e-12 or above"),
+        (&["--angle", "nan"], "give a number, 1e-12 or above"),
+        (&["--angle", "1e-320"], "give a number, 1e-12 or above"),
+        (&["--curvature", "inf"], "give a number, 1e-12 or above"),
         (&["--curvature", "x"], "--curvature"),
-        (&["--mm-per-unit", "0"], "give a number above 0"),
+        (&["--mm-per-unit", "0"], "give a number of millimetres from 1e-30 to 1e30"),
+        (&["--mm-per-unit", "1e308"], "give a number of millimetres from 1e-30 to 1e30"),
         (&["--ignore", "seams"], "possible values: creases, semi-sharp, smooth, vertices"),
         (&["--count", "some"], "--count"),
         (&["-o", "q.jpg"], "choose a name that ends in .png"),

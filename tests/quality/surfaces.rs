@@ -3,7 +3,7 @@
 use crate::common::{angle_deg, corpus, meshes, on_edge};
 use catoptric::field::{Method, Scout};
 use catoptric::mesh::{Boundary, Crease, SubdivMesh};
-use catoptric::quality::{Continuity, FeatureKind, Limits, Line, Quality, Reading};
+use catoptric::quality::{Continuity, FeatureKind, Limits, Line, Quality, Reading, Unjudged};
 use catoptric::stam::LimitSurface;
 use glam::{DVec3, dvec3};
 
@@ -68,7 +68,7 @@ fn a_folded_plane_has_its_angle_and_nothing_else() {
         let place = worst.place;
         let (_, there) = surface.evaluate_ptex(place.face, [place.u, place.v]).expect("no hole");
         assert!(there.position.distance(worst.position) < 1e-14);
-        assert!(quality.vertices.is_empty() && quality.unjudged_edges.is_empty());
+        assert!(quality.vertices.is_empty() && quality.unjudged == Unjudged::default());
     }
 }
 

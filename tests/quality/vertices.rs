@@ -102,6 +102,9 @@ fn sectors_are_judged_one_by_one() {
     assert_eq!(faces("crease_sectors_5_6"), [(crease, 5, false), (crease, 6, false)]);
     assert_eq!(faces("dart_5"), [(PatchKind::Dart, 5, true)]);
     assert_eq!(faces("cone"), [(PatchKind::Corner, 5, false)]);
+    // One sector at the end of the crease, whichever of its faces have a surface.
+    let dart = PatchKind::Dart;
+    assert_eq!(faces("boundary_none_crease"), [(dart, 2, true), (dart, 2, true)]);
     let [cone] = &vertices("cone")[..] else { panic!("one vertex") };
     assert!(cone.angle_deg.expect("normals") > 10.0 && cone.difference().is_none(), "{cone:?}");
     // Where normals agree at the vertex itself, that is no tangent plane; unless the sheet is flat.

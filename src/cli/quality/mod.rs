@@ -7,7 +7,7 @@ mod table;
 use super::account::Account;
 use super::args::size;
 use super::field::{ColourArgs, FieldArgs, PatternArgs};
-use super::rig::{RigArgs, positive};
+use super::rig::RigArgs;
 use super::settings::{CommandLine, mesh_digest};
 use super::{Failure, load, progress, write_out};
 use crate::field::{Field, Pattern, Scout};
@@ -44,7 +44,7 @@ pub(super) struct QualityArgs {
     #[arg(long, value_name = "PERCENT", default_value_t = 2.0, value_parser = limit, allow_negative_numbers = true)]
     curvature: f64,
     /// Millimetres that a world unit takes: gaps are in millimetres then
-    #[arg(long, value_name = "MM", value_parser = positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "MM", value_parser = unit, allow_negative_numbers = true)]
     mm_per_unit: Option<f64>,
     /// What is measured but neither judged nor listed, for breaks that are meant
     #[arg(long, value_name = "KIND,...", value_enum, value_delimiter = ',')]
@@ -92,9 +92,17 @@ impl Ignored {
     }
 }
 
+/// Limits below would be exceeded by rounding.
+const LEAST: f64 = 1e-12;
+
 fn limit(text: &str) -> Result<f64, String> {
-    let limit = text.parse().ok().filter(|x: &f64| *x >= 0.0 && x.is_finite());
-    limit.ok_or_else(|| "give a number, 0 or above".to_owned())
+    let limit = text.parse().ok().filter(|x: &f64| *x >= LEAST && x.is_finite());
+    limit.ok_or_else(|| format!("give a number, {LEAST:e} or above: less is rounding"))
+}
+
+fn unit(text: &str) -> Result<f64, String> {
+    let unit = text.parse().ok().filter(|x: &f64| (1e-30..=1e30).contains(x));
+    unit.ok_or_else(|| "give a number of millimetres from 1e-30 to 1e30".to_owned())
 }
 
 /// A surface, judged.

@@ -8,6 +8,7 @@ use crate::gpu::{Gpu, TableLayout, View};
 use crate::output::{Canvas, Drawn, Mark, Panel, Pen, Scale, in_picture, sheet, write_png};
 use crate::quality::{Piece, Ranked, Subject};
 use crate::stam::LimitSurface;
+use crate::statistics::exact;
 use glam::DVec2;
 use rayon::prelude::*;
 use std::path::Path;
@@ -156,5 +157,6 @@ fn said(verdict: &Verdict<'_>, marks: &[Mark], count: usize) -> String {
 fn legend(verdict: &Verdict<'_>) -> String {
     let limits = &verdict.limits;
     let unit = limits.unit();
-    format!("Times the limit ({} {unit}, {} degrees, {} %)", limits.gap, limits.angle_deg, limits.percent)
+    let [gap, angle, percent] = [limits.gap, limits.angle_deg, limits.percent].map(exact);
+    format!("Times the limit ({gap} {unit}, {angle} degrees, {percent} %)")
 }

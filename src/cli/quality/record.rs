@@ -2,7 +2,7 @@
 
 use super::Verdict;
 use crate::cli::settings::method_name;
-use crate::quality::{Extremes, Feature, LineBreak, Ranked, Ring, Spot, Subject, Vertex};
+use crate::quality::{Extremes, Feature, Line, LineBreak, Ranked, Ring, Spot, Subject, Vertex};
 use serde_json::{Value, json};
 
 /// The whole of it; docs/QUALITY.md has the keys.
@@ -16,6 +16,7 @@ pub(super) fn json(verdict: &Verdict<'_>) -> serde_json::Result<Vec<u8>> {
         places.push(place(verdict, (!is_ignored).then_some(rank), ranked));
     }
     let over = verdict.over();
+    let unjudged = &verdict.quality.unjudged;
     let value = json!({
         "version": 1,
         "mesh": verdict.mesh.name,
@@ -29,7 +30,11 @@ pub(super) fn json(verdict: &Verdict<'_>) -> serde_json::Result<Vec<u8>> {
         "judged": verdict.judged().count(),
         "over": over,
         "smooth_joints": joint(verdict, &verdict.quality.smooth, verdict.quality.smooth_joints),
-        "unjudged_edges": verdict.quality.unjudged_edges,
+        "unjudged": {
+            "edges_without_surface": unjudged.edges_without_surface,
+            "nonmanifold_edges": unjudged.nonmanifold_edges,
+            "nonmanifold_vertices": unjudged.nonmanifold_vertices,
+        },
         "places": places,
     });
     let mut text = serde_json::to_vec_pretty(&value)?;
@@ -80,6 +85,12 @@ fn of_feature(verdict: &Verdict<'_>, feature: &Feature) -> Value {
     let mut value = joint(verdict, &feature.extremes, feature.pieces.len());
     let chain = feature.chain.as_ref();
     value["vertices"] = json!(chain.map(|chain| &chain.vertices));
+    let (what, number) = match feature.line {
+        Line::Edge(edge) => ("edge", json!(edge)),
+        Line::Spoke { face, corner } => ("spoke", json!({ "face": face, "corner": corner })),
+        Line::Inside { ptex } => ("inside_ptex_face", json!(ptex)),
+    };
+    value["lies_on"] = json!({ what: number });
     value["closed"] = json!(chain.map(|chain| chain.closed));
     value["sharpness"] = json!(feature.sharpness);
     value["curvatures"] = json!(feature.extremes.worst.and_then(|(_, worst)| worst.continuity.curvature));

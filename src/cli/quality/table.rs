@@ -1,8 +1,8 @@
 //! The verdict as text: a summary, and a list in columns.
 
 use super::Verdict;
-use crate::quality::{Break, Chain, Extremes, Kind, Line, LineBreak, Ranked, Spot, Subject, Vertex};
-use crate::statistics::short;
+use crate::quality::{Break, Chain, Extremes, Kind, Line, LineBreak, Ranked, Spot, Subject, Unjudged, Vertex};
+use crate::statistics::{exact, short};
 use std::fmt::Write;
 
 /// Columns of the list; those of words are aligned to the left.
@@ -79,17 +79,24 @@ fn summary(verdict: &Verdict<'_>) -> String {
         angle_deg.map_or("-".to_owned(), short),
         difference.map_or("-".to_owned(), |difference| short(100.0 * difference) + " %"),
     );
-    if !quality.unjudged_edges.is_empty() {
-        let _ = writeln!(out, "{} edges not judged: they are not manifold", quality.unjudged_edges.len());
+    let Unjudged { edges_without_surface, nonmanifold_edges, nonmanifold_vertices } = &quality.unjudged;
+    for (count, [one, many], why) in [
+        (edges_without_surface.len(), ["edge", "edges"], "without surfaces on two sides (boundary rule none)"),
+        (nonmanifold_edges.len(), ["edge", "edges"], "not manifold"),
+        (nonmanifold_vertices.len(), ["vertex", "vertices"], "not manifold: sheets that share no edge meet there"),
+    ] {
+        if count > 0 {
+            let _ = writeln!(out, "{count} {} not judged: {why}", if count == 1 { one } else { many });
+        }
     }
     let limits = &verdict.limits;
     let _ = writeln!(
         out,
         "limits: gap {} {}, angle {} degrees, curvature {} %; field: {}",
-        limits.gap,
+        exact(limits.gap),
         limits.unit(),
-        limits.angle_deg,
-        limits.percent,
+        exact(limits.angle_deg),
+        exact(limits.percent),
         verdict.field.method
     );
     out
@@ -117,7 +124,7 @@ fn row(verdict: &Verdict<'_>, rank: usize, ranked: &Ranked<'_>, diagonal: f64) -
         Some((place, position)) => {
             // A hundredth of the diagonal, or a little better.
             let digits = (2.5 - diagonal.log10()).ceil().clamp(0.0, 9.0) as usize;
-            let coordinates = position.to_array().map(|x| format!("{x:.digits$}"));
+            let coordinates = position.to_array().map(|x| fixed(x, digits));
             (format!("{},{},{}", place.face, part(place.u), part(place.v)), coordinates.join(","))
         }
         None => (none(), none()),
@@ -150,6 +157,15 @@ fn row(verdict: &Verdict<'_>, rank: usize, ranked: &Ranked<'_>, diagonal: f64) -
 /// A number in few digits; what is rounding is about 0.
 fn figure(x: f64) -> String {
     if x != 0.0 && x.abs() < ROUNDING { "~0".to_owned() } else { short(x) }
+}
+
+/// A number with so many decimals; what is rounded to 0 has no sign.
+fn fixed(x: f64, digits: usize) -> String {
+    let text = format!("{x:.digits$}");
+    match text.strip_prefix('-') {
+        Some(size) if size.bytes().all(|c| matches!(c, b'0' | b'.')) => size.to_owned(),
+        _ => text,
+    }
 }
 
 /// A parameter with at most three decimals.
@@ -230,5 +246,17 @@ fn chain_name(chain: &Chain) -> String {
         ([a, b, .., z], false) => format!("{a}-{b}..{z} ({edges})"),
         ([a, b, ..], true) => format!("{a}-{b}..{a} ({edges})"),
         _ => String::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn zero_has_no_sign() {
+        let texts = [-0.004, -0.0, 0.004, -0.006, -12.0].map(|x| fixed(x, 2));
+        assert_eq!(texts, ["0.00", "0.00", "0.00", "-0.01", "-12.00"]);
+        assert_eq!([fixed(-0.4, 0), fixed(-0.6, 0)], ["0", "-1"]);
     }
 }
