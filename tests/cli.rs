@@ -135,7 +135,7 @@ fn bad_usage_is_refused() {
             "out.tiff: not a picture that we write; choose a name that ends in .png or .exr",
         ),
         (&["eval", "--samples", "no-such.csv"], "no-such.csv"),
-        (&["render", "--up", "0,0,0"], "up direction"),
+        (&["render", "--up", "0,0,0"], "--up has no direction"),
         (&["render", "--light-spacing", "0"], "above 0"),
         (&["eval"], "--samples"),
         (&[], "no command"),

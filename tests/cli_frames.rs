@@ -200,8 +200,9 @@ fn files_carry_the_command_that_makes_them() {
     let reader = decoder.read_info().expect("a PNG");
     let text = reader.info().utf8_text.iter().find(|text| text.keyword == "catoptric").expect("a text");
     let text = text.get_text().expect("it is plain");
-    let (command, digests) = text.split_once(" # ").expect("digests");
-    assert!(digests.starts_with("mesh ") && !digests.contains("pattern"), "{text}");
+    let (command, digests) = text.split_once(", mesh ").expect("digests");
+    let (command, version) = command.split_once(" # ").expect("a comment");
+    assert!(version == concat!("catoptric ", env!("CARGO_PKG_VERSION")) && !digests.contains("pattern"), "{text}");
     let flags = command.split_once("corner.obj ").expect("the mesh").1;
     folder.done(&format!("{flags} -o again.png"));
     let [a, b] = ["view_0002.png", "again.png"].map(|name| folder.pixels(name));
@@ -219,6 +220,11 @@ fn bad_series_are_refused() {
         ("--resume", "--frames N"),
         ("--frames 3 --orbit 360 --sweep-light", "two series"),
         ("--frames 3 --sweep-light --field isophote", "changes nothing of isophote"),
+        ("--frames 3 --sweep-light --field curvature", "changes nothing of curvature"),
+        ("--frames 3 --sweep-light --field curve:circle", "has no period for curve:circle"),
+        ("--frames 3 --sweep-light --field highlight:signed", "has no period for highlight:signed"),
+        ("--frames 3 --sweep-light --field highlight:pseudo", "has no period for highlight:pseudo"),
+        ("--frames 3 --sweep-light --field highlight:alternative=0.1", "has no period for highlight:alternative=0.1"),
         ("--frames 3 --orbit 0", "other than 0"),
         ("--frames 3 --orbit nan", "other than 0"),
         ("--frames 3 --sweep-light inf", "other than 0"),

@@ -60,6 +60,10 @@ impl PatternArgs {
     pub fn rig(&self) -> Result<PatternRig, Failure> {
         let width = self.light_width;
         Ok(match self.pattern.as_deref() {
+            Some("") => {
+                let names = "stripes, lattice, circles, band, heat or a PNG file";
+                return Err(Failure::Bad(format!("--pattern names nothing; give {names}")));
+            }
             None => PatternRig { width, ..PatternRig::default() },
             Some(text) => match text.strip_prefix("heat:") {
                 Some(ends) => PatternRig { name: Some(PatternName::Heat), width, range: Some(range(ends)?) },

@@ -3,7 +3,8 @@
 use super::Failure;
 use super::render::Format;
 use super::rig::orbited;
-use crate::field::{Field, Method, Pattern};
+use super::settings::method_name;
+use crate::field::{Field, HighlightKind, Method, Pattern};
 use crate::rig::FittedRig;
 use clap::Args;
 use glam::DQuat;
@@ -57,14 +58,24 @@ impl FramesArgs {
         }
     }
 
-    /// Refuses to move a light that a method reads no place of.
+    /// Refuses to move a light that a method reads no place of, or whose spacing is no distance that it could move by.
     pub(super) fn check_method(&self, method: &Method) -> Result<(), Failure> {
-        let reads_place = !matches!(method, Method::Isophote | Method::Curvature(_));
-        match self.sweep_light.is_some() && !reads_place {
-            true => Err(Failure::Bad(format!(
-                "--sweep-light changes nothing of {method}, which does not read where the light is; give --orbit, or another --field"
-            ))),
-            false => Ok(()),
+        let what = match method {
+            Method::Isophote | Method::Curvature(_) => {
+                format!("changes nothing of {method}, which does not read where the light is")
+            }
+            Method::Curve(_)
+            | Method::Highlight(HighlightKind::Signed | HighlightKind::Pseudo | HighlightKind::Alternative(_)) => {
+                let method = method_name(method);
+                format!("has no period for {method}, whose values do not repeat as the light moves")
+            }
+            Method::Reflection | Method::RayDistance | Method::Highlight(_) | Method::Sphere(_) | Method::Section => {
+                return Ok(());
+            }
+        };
+        match self.sweep_light {
+            Some(_) => Err(Failure::Bad(format!("--sweep-light {what}; give --orbit, or another --field"))),
+            None => Ok(()),
         }
     }
 

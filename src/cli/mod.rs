@@ -5,6 +5,7 @@ mod args;
 mod compare;
 mod eval;
 mod field;
+mod files;
 mod frames;
 mod glints;
 mod info;

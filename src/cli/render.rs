@@ -156,17 +156,13 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let paths = args.frames.paths(&args.output)?;
     check_writable(&paths[0])?;
     if let Some(json) = &args.json {
-        if paths.contains(json) {
-            return Err(Failure::Bad(format!(
-                "{}: --json would overwrite the picture; choose another name",
-                json.display()
-            )));
-        }
         check_writable(json)?;
-        args.rig.check_apart(json)?;
     }
-    paths.iter().try_for_each(|path| args.rig.check_apart(path))?;
     let rig = args.rig()?;
+    let mut files = args.rig.files(args.mesh.as_deref(), &rig);
+    paths.iter().try_for_each(|path| files.write(path, "-o", "the picture"))?;
+    args.json.iter().try_for_each(|path| files.write(path, "--json", "the certificates"))?;
+    args.rig.check_apart(&mut files)?;
     let pattern = rig.pattern.read(&rig.method()).map_err(Failure::Bad)?;
     let bar = progress("drawing".to_owned());
     let mesh = account.time("read", || load(args.mesh.as_deref()))?;

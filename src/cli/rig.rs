@@ -2,11 +2,12 @@
 
 use super::Failure;
 use super::args::vector;
+use super::files::Files;
 use crate::field::{Camera, Light, Scout, sample_rig};
 use crate::output::{check_writable, write_whole};
 use crate::rig::{
-    Attachment, CameraRig, FittedRig, LightRig, PatternRig, Preset, ProjectionName, Rig, RigError, RigFormat,
-    checked_extents, checked_fov, checked_positive,
+    Attachment, CameraRig, FittedRig, LightRig, PatternRig, Preset, ProjectionName, Rig, RigError, RigFileError,
+    RigFormat, checked_extents, checked_fov, checked_positive,
 };
 use clap::{Args, ValueEnum};
 use glam::DVec3;
@@ -80,12 +81,6 @@ fn extents(text: &str) -> Result<[f64; 2], String> {
     checked_extents(sides.unwrap_or([f64::NAN; 2]))
 }
 
-/// A rig's fault in words of the command line.
-fn bad(error: RigError) -> Failure {
-    let flag = error.key.trim_start_matches("camera.").replace('.', "-");
-    Failure::Bad(format!("--{flag} {}", error.problem))
-}
-
 impl RigArgs {
     /// Refuses flags that contradict each other, and files that cannot be written.
     pub(super) fn check(&self) -> Result<(), Failure> {
@@ -114,15 +109,14 @@ impl RigArgs {
         }
     }
 
+    /// The files that this run reads.
+    pub(super) fn files(&self, mesh: Option<&Path>, rig: &Rig) -> Files {
+        Files::read(mesh, self.file(), rig)
+    }
+
     /// Refuses to write the rig over another file of this run.
-    pub(super) fn check_apart(&self, other: &Path) -> Result<(), Failure> {
-        match &self.save_rig {
-            Some(path) if path == other => {
-                let what = "--save-rig would overwrite it, or the other way round; choose another name";
-                Err(Failure::Bad(format!("{}: {what}", path.display())))
-            }
-            _ => Ok(()),
-        }
+    pub(super) fn check_apart(&self, files: &mut Files) -> Result<(), Failure> {
+        self.save_rig.iter().try_for_each(|path| files.write(path, "--save-rig", "the light rig"))
     }
 
     /// What is said of the picture: these flags and `more`, and where they say nothing the rig that they name.
@@ -164,14 +158,47 @@ impl RigArgs {
             }
         };
         let rig = flags.over(base).with_preset();
-        rig.check().map_err(bad)?;
+        rig.check().map_err(|error| self.bad(error))?;
         Ok(rig)
     }
 
     /// A rig fitted to a surface; `is_sample`: to the built-in one, which has a camera and a light of its own.
     pub(super) fn fit(&self, rig: &Rig, scout: &Scout, is_sample: bool) -> Result<FittedRig, Failure> {
         let habit: Option<(DVec3, Light)> = is_sample.then(sample_rig);
-        rig.fit(scout, habit).map_err(bad)
+        let fitted = rig.fit(scout, habit).map_err(|error| self.bad(error))?;
+        self.check_camera(&fitted.camera)?;
+        Ok(fitted)
+    }
+
+    /// A rig's fault in words of the file that has it, or else of the command line.
+    fn bad(&self, error: RigError) -> Failure {
+        let given = match error.key {
+            "camera.up" => self.up.is_some(),
+            "camera.fov" => self.fov.is_some() || self.projection.is_some(),
+            "camera.height" => self.height.is_some() || self.projection.is_some(),
+            "light.normal" => self.light_normal.is_some(),
+            "light.lines" => self.light_lines.is_some(),
+            _ => false,
+        };
+        if let Some(path) = self.file().filter(|_| !given) {
+            return Failure::Bad(RigFileError::of(path, &error).to_string());
+        }
+        let flag = error.key.trim_start_matches("camera.").replace('.', "-");
+        Failure::Bad(format!("--{flag} {}", error.problem))
+    }
+
+    /// The file that the rig is read from.
+    fn file(&self) -> Option<&Path> {
+        self.rig.as_deref().filter(|path| RigFormat::of(path).is_some())
+    }
+
+    /// Refuses a fitted camera without a picture; the file is named where it alone says what the camera is.
+    fn check_camera(&self, camera: &Camera) -> Result<(), Failure> {
+        let flags = self.eye.or(self.target).or(self.up).is_some() || self.fov.or(self.height).is_some();
+        camera.check(1).map_err(|what| match self.file().filter(|_| !flags) {
+            Some(path) => Failure::Bad(format!("{}: {what}", path.display())),
+            None => Failure::Bad(what),
+        })
     }
 
     /// Writes the whole rig if a file for it is named.

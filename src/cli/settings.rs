@@ -16,9 +16,12 @@ pub(super) struct CommandLine(String);
 impl CommandLine {
     /// The command, and the file name of its mesh: the folder is nobody's business.
     pub(super) fn new(command: &str, mesh: Option<&Path>) -> CommandLine {
-        let mut line = CommandLine(format!("catoptric {} {command}", env!("CARGO_PKG_VERSION")));
+        let mut line = CommandLine(format!("catoptric {command}"));
         if let Some(path) = mesh {
-            line.word(&path.file_name().unwrap_or_default().to_string_lossy());
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            // It would be taken for a flag.
+            let folder = if name.starts_with('-') { "./" } else { "" };
+            line.word(&format!("{folder}{name}"));
         }
         line
     }
@@ -104,9 +107,9 @@ impl CommandLine {
         }
     }
 
-    /// The line, with digests of the mesh ([`mesh_digest`]) and of the grid of a field in a comment.
+    /// The line, with the version and digests of the mesh ([`mesh_digest`]) and of the grid of a field in a comment.
     pub(super) fn finish(self, mesh: u64, method: &Method) -> String {
-        let mut line = format!("{} # mesh {mesh:016x}", self.0);
+        let mut line = format!("{} # catoptric {}, mesh {mesh:016x}", self.0, env!("CARGO_PKG_VERSION"));
         if let Some((size, values)) = method.grid().and_then(Grid::net) {
             let mut digest = Digest::new();
             digest.bytes(bytemuck::bytes_of(&size));
@@ -216,8 +219,13 @@ mod tests {
         line.flag("field", "curve:x^2 - y^2");
         line.flag("light-center", "-1,2.5,1e-7");
         line.switch("hidden");
-        let expected = r"'it'\''s a car.obj' '--field=curve:x^2 - y^2' --light-center=-1,2.5,1e-7 --hidden # mesh 000000000000002a";
-        assert!(line.finish(42, &Method::Reflection).ends_with(&format!(" lines {expected}")));
+        let words =
+            r"catoptric lines 'it'\''s a car.obj' '--field=curve:x^2 - y^2' --light-center=-1,2.5,1e-7 --hidden";
+        let version = env!("CARGO_PKG_VERSION");
+        let expected = format!("{words} # catoptric {version}, mesh 000000000000002a");
+        assert_eq!(line.finish(42, &Method::Reflection), expected);
+        let line = CommandLine::new("render", Some(Path::new("cars/-x.obj")));
+        assert_eq!(line.0, "catoptric render ./-x.obj");
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! A camera in f64: a pinhole, or one with parallel lines of sight.
 
+mod check;
+
 use glam::{DMat2, DVec2, DVec3, dvec3};
 
 /// Vertical field of view of a fitted camera, in degrees: a short telephoto lens, as product photographers use.

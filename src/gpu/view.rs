@@ -6,7 +6,7 @@ use super::shader::{
     Content, PATTERN_BAND, PATTERN_CIRCLES, PATTERN_HEAT, PATTERN_LATTICE, PATTERN_PICTURE, PATTERN_STRIPES,
 };
 use super::{GpuError, Tables};
-use crate::field::{Camera, Field, Light, MAX_FOV, Palette, Pattern, Projection};
+use crate::field::{Camera, Field, Light, Palette, Pattern};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -105,39 +105,11 @@ impl View {
         if self.field.method.reads_curvature() && tables.content() == Content::Tails {
             return fail("curvature is read from tables in the expanded layout only (--tables expanded)".into());
         }
-        let Camera { eye, target, up, projection, size } = self.camera;
+        let Camera { size, .. } = self.camera;
         if size.iter().any(|n| !(1..=MAX_SIZE).contains(n)) {
             return fail(format!("picture size {}x{}: each side must be 1 to {MAX_SIZE} pixels", size[0], size[1]));
         }
-        if !(eye.is_finite() && target.is_finite() && up.is_finite()) || eye == target {
-            return fail("the camera's eye and target must be two finite points".into());
-        }
-        if (target - eye).normalize().cross(up.normalize_or_zero()).length() < 1e-9 {
-            return fail("the camera's up direction must not be zero or parallel to the line of sight".into());
-        }
-        match projection {
-            Projection::Perspective { fov } if !(fov > 0.0 && fov <= MAX_FOV) => {
-                return fail(format!("field of view {fov}: must be above 0 and at most {MAX_FOV} degrees"));
-            }
-            Projection::Orthographic { height } if !(height > 0.0 && height.is_finite()) => {
-                return fail(format!("view height {height}: must be a finite length above 0"));
-            }
-            _ => {}
-        }
-        // Positions have 16 digits; below the last one there is nothing to see.
-        let distance = (target - eye).length();
-        let height = match projection {
-            Projection::Perspective { fov } => 2.0 * distance * (fov.to_radians() * 0.5).tan(),
-            Projection::Orthographic { height } => height,
-        };
-        let pixel = height / f64::from(size[1] * self.samples.max(1));
-        let largest = eye.abs().max_element().max(target.abs().max_element()).max(distance);
-        // The fitted camera of a single point in the origin is a few of the least numbers away.
-        if largest > f64::MIN_POSITIVE.sqrt() && pixel < 1e-15 * largest {
-            return fail(format!(
-                "a pixel would span {pixel:.0e} world units at the target, too little beside coordinates of {largest:.0e}: show a larger part"
-            ));
-        }
+        self.camera.check(self.samples).map_err(GpuError::View)?;
         if let Some(level) = self.proxy_level.filter(|&level| level > MAX_PROXY_LEVEL) {
             return fail(format!("proxy level {level}: must be 0 to {MAX_PROXY_LEVEL}"));
         }

@@ -1,6 +1,6 @@
 //! Rigs as TOML or JSON files; every fault with its line.
 
-use super::{PatternName, Rig};
+use super::{PatternName, Rig, RigError};
 use crate::field::Method;
 use std::path::{Path, PathBuf};
 
@@ -23,6 +23,15 @@ pub struct RigFileError {
     pub line: Option<usize>,
     /// What is wrong, and what to do.
     pub problem: String,
+}
+
+impl RigFileError {
+    /// A rig from this file that turned out to contradict itself, with the line where the file says so, if it does.
+    pub fn of(path: &Path, error: &RigError) -> RigFileError {
+        let text = std::fs::read_to_string(path).unwrap_or_default();
+        let line = RigFormat::of(path).and_then(|format| line_of_key(&text, error.key, format));
+        RigFileError { path: path.to_owned(), line, problem: error.to_string() }
+    }
 }
 
 impl RigFormat {
@@ -58,11 +67,25 @@ fn line_of(text: &str, at: usize) -> usize {
     text.as_bytes()[..at.min(text.len())].iter().filter(|&&byte| byte == b'\n').count() + 1
 }
 
+/// A line of TOML without its comment: a `#` in quotes begins none.
+fn without_comment(line: &str) -> &str {
+    let mut quote = None;
+    for (at, c) in line.char_indices() {
+        match (quote, c) {
+            (None, '#') => return &line[..at],
+            (None, '"' | '\'') => quote = Some(c),
+            (Some(open), _) if open == c => quote = None,
+            _ => {}
+        }
+    }
+    line
+}
+
 /// Line of a key such as `light.normal`: no two tables have a key in common.
-fn line_of_key(text: &str, key: &str) -> Option<usize> {
+fn line_of_key(text: &str, key: &str, format: RigFormat) -> Option<usize> {
     let name = key.rsplit('.').next().unwrap_or(key);
     let is_set = |line: &str| {
-        let line = line.split('#').next().unwrap_or(line);
+        let line = if format == RigFormat::Toml { without_comment(line) } else { line };
         line.match_indices(name).any(|(at, _)| {
             let is_word = |c: char| c.is_alphanumeric() || c == '_' || c == '-';
             let after = line[at + name.len()..].trim_start_matches('"').trim_start();
@@ -85,19 +108,21 @@ impl Rig {
         let text = std::fs::read_to_string(path)
             .map_err(|e| error(None, format!("cannot read the light rig ({e}); give a TOML or JSON file")))?;
         let mut rig = format.parse(&text).map_err(|(line, what)| error(line, format!("{what}; see docs/RIGS.md")))?;
-        rig.check().map_err(|e| error(line_of_key(&text, e.key), e.to_string()))?;
+        // With the preset's word, as every picture has it.
+        let whole = rig.clone().with_preset();
+        whole.check().map_err(|e| error(line_of_key(&text, e.key, format), e.to_string()))?;
         if let Some(PatternName::File(picture)) = &mut rig.pattern.name {
             let found = path.parent().unwrap_or(Path::new("")).join(&*picture);
             if !found.is_file() {
                 let names = "stripes, lattice, circles, band, heat or a PNG file beside this one";
                 let what = format!("pattern.name \"{}\": there is no such picture; give {names}", picture.display());
-                return Err(error(line_of_key(&text, "pattern.name"), what));
+                return Err(error(line_of_key(&text, "pattern.name", format), what));
             }
             *picture = found;
         }
         if let Some(grid) = rig.field.as_mut().and_then(Method::grid_mut) {
             grid.set_path(path.parent().unwrap_or(Path::new("")).join(grid.path()));
-            grid.read().map_err(|what| error(line_of_key(&text, "field"), format!("field: {what}")))?;
+            grid.read().map_err(|what| error(line_of_key(&text, "field", format), format!("field: {what}")))?;
         }
         Ok(rig)
     }
@@ -134,10 +159,15 @@ mod tests {
     #[test]
     fn keys_are_found_where_they_are_set() {
         let toml = "# fov = 3\n[camera]\nprojection = \"orthographic\"\nfov = 26\nlight.lines = [1, 2, 3]";
-        assert_eq!(line_of_key(toml, "camera.fov"), Some(4));
-        assert_eq!(line_of_key(toml, "light.lines"), Some(5));
-        assert_eq!(line_of_key(toml, "light.normal"), None);
+        assert_eq!(line_of_key(toml, "camera.fov", RigFormat::Toml), Some(4));
+        assert_eq!(line_of_key(toml, "light.lines", RigFormat::Toml), Some(5));
+        assert_eq!(line_of_key(toml, "light.normal", RigFormat::Toml), None);
+        let inline = "\ncolours = { paint = \"#112233\", top = '#445566' } # bottom = 3";
+        assert_eq!(line_of_key(inline, "colours.top", RigFormat::Toml), Some(2));
+        assert_eq!(line_of_key(inline, "colours.bottom", RigFormat::Toml), None);
         let json = "{\"light\": {\n \"lines\" : [0, 0, 0]}}";
-        assert_eq!(line_of_key(json, "light.lines"), Some(2));
+        assert_eq!(line_of_key(json, "light.lines", RigFormat::Json), Some(2));
+        let json = "{\"colours\": {\"paint\": \"#112233\"}, \"light\": {\"normal\": [0, 0, 0]}}";
+        assert_eq!(line_of_key(json, "light.normal", RigFormat::Json), Some(1));
     }
 }

@@ -203,21 +203,14 @@ pub struct RigError {
 
 impl Rig {
     /// This rig, and another one's word where it says nothing. A projection brings its own field of view or height with it, and
-    /// a pattern its own width and range.
+    /// a pattern its own width and range; a light that is attached to something else its own vectors: the other rig's are in other
+    /// coordinates.
     pub fn over(self, base: Rig) -> Rig {
-        let (own, base_light) = (self.light, base.light);
         Rig {
             preset: self.preset.or(base.preset),
             field: self.field.or(base.field),
             camera: self.camera.over(base.camera),
-            light: LightRig {
-                attached: own.attached.or(base_light.attached),
-                center: own.center.or(base_light.center),
-                normal: own.normal.or(base_light.normal),
-                lines: own.lines.or(base_light.lines),
-                spacing: own.spacing.or(base_light.spacing),
-                size: own.size.or(base_light.size),
-            },
+            light: self.light.over(base.light),
             pattern: self.pattern.over(base.pattern),
             colours: self.colours.over(base.colours),
         }
@@ -246,12 +239,15 @@ impl Rig {
             return bad("pattern.range", "is for the pattern \"heat\"; leave it out, or choose that one");
         }
         let LightRig { normal, lines, .. } = self.light;
-        let none = "has no direction; give one that is not 0,0,0";
-        if normal == Some(DVec3::ZERO) {
-            return bad("light.normal", none);
-        }
-        if lines == Some(DVec3::ZERO) {
-            return bad("light.lines", none);
+        for (key, direction) in [("camera.up", self.camera.up), ("light.normal", normal), ("light.lines", lines)] {
+            match direction {
+                Some(DVec3::ZERO) => return bad(key, "has no direction; give one that is not 0,0,0"),
+                // Its square under- or overflows.
+                Some(long) if !long.length_squared().is_normal() => {
+                    return bad(key, "is too short or too long to have a direction; give one of length 1");
+                }
+                _ => {}
+            }
         }
         match (normal, lines) {
             (Some(normal), Some(lines)) => check_lines(normal, lines),
@@ -270,6 +266,21 @@ fn check_lines(normal: DVec3, lines: DVec3) -> Result<(), RigError> {
             problem: "is parallel to the normal of the light plane; give a direction with a part in the plane",
         }),
         false => Ok(()),
+    }
+}
+
+impl LightRig {
+    fn over(self, base: LightRig) -> LightRig {
+        let moves = self.attached.is_some_and(|own| own != base.attached.unwrap_or_default());
+        let vector = |own: Option<DVec3>, base: Option<DVec3>| own.or(base.filter(|_| !moves));
+        LightRig {
+            attached: self.attached.or(base.attached),
+            center: vector(self.center, base.center),
+            normal: vector(self.normal, base.normal),
+            lines: vector(self.lines, base.lines),
+            spacing: self.spacing.or(base.spacing),
+            size: self.size.or(base.size),
+        }
     }
 }
 

@@ -105,10 +105,10 @@ fn files_say_how_to_make_them_again() {
             assert!(output.status.success(), "{args:?}: {}", String::from_utf8_lossy(&output.stderr));
             let first = std::fs::read_to_string(folder.join(&name)).expect("a file");
             let command = made_by(&first, extension);
-            let version = format!("catoptric {} ", env!("CARGO_PKG_VERSION"));
-            let words = command.strip_prefix(&version).expect("it begins with the version");
+            let words = command.strip_prefix("catoptric ").expect("it begins with the program");
             std::fs::remove_file(folder.join(&name)).expect("it is removed");
-            let (words, digest) = words.split_once(" # mesh ").expect("a digest");
+            let version = format!(" # catoptric {}, mesh ", env!("CARGO_PKG_VERSION"));
+            let (words, digest) = words.split_once(&version).expect("version and digest");
             assert_eq!(digest.len(), 16, "{digest}");
             let script = format!("\"$0\" {words} -o {name}");
             let mut shell = Command::new("sh");
@@ -121,6 +121,34 @@ fn files_say_how_to_make_them_again() {
         }
     }
     assert_eq!(compared, 7 * 5 + 2);
+}
+
+/// Lights that have ends are chosen from those within them.
+#[test]
+fn lights_are_chosen_within_the_extents() {
+    let folder = folder();
+    let folder = folder.path();
+    assert!(!curves(&json(folder, &["--rig", "showroom"])).is_empty());
+    std::fs::copy(pole().with_file_name("cube.obj"), folder.join(NAME)).expect("it is copied");
+    let flags = [
+        "--light-spacing=0.2",
+        "--light-size=3,40",
+        "--light-center=0,12,6",
+        "--light-normal=0,0,-1",
+        "--light-lines=1,0,0",
+    ];
+    let [chosen, all] = [&[][..], &["--lights=-7,7"]].map(|more| curves(&json(folder, &[&flags[..], more].concat())));
+    let lights = |curves: &[(i64, f64, Vec<Placed>)]| curves.iter().map(|curve| curve.0).collect::<Vec<_>>();
+    assert!(!all.is_empty() && lights(&chosen) == lights(&all), "{:?} {:?}", lights(&chosen), lights(&all));
+}
+
+/// A length of nothing is 0.
+#[test]
+fn no_curves_are_no_length() {
+    let folder = folder();
+    let output = lines(folder.path(), &["--field", "section", "--values", "1e6"]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(said.contains("lines: 0 curves of 0 lights") && said.contains(" 0.000000 world units long"), "{said}");
 }
 
 #[test]

@@ -80,3 +80,16 @@ fn first_frames_are_the_same() {
     let [object, camera] = ["object", "camera"].map(|attached| folder.drawn(&["--light-attached", attached]));
     assert!(different(&object, &camera) < object.len() / 200, "{}", different(&object, &camera));
 }
+
+/// Vectors of a file are not read in other coordinates than it gives them in.
+#[test]
+fn another_attachment_sets_vectors_aside() {
+    let folder = Folder::new();
+    folder.write("world.toml", "[light]\ncenter = [0, 0, 9]\nnormal = [0, 0, -1]\nlines = [1, 0, 0]\nspacing = 0.5");
+    let mut fitted = folder.drawn(&["--light-attached=camera", "--light-spacing=0.5"]);
+    assert!(folder.drawn(&["--light-attached=camera", "--rig=world.toml"]) == fitted);
+    // The same one again sets nothing aside.
+    fitted = folder.drawn(&["--rig=world.toml"]);
+    assert!(folder.drawn(&["--light-attached=object", "--rig=world.toml"]) == fitted);
+    assert!(folder.drawn(&["--light-attached=object", "--light-spacing=0.5"]) != fitted);
+}

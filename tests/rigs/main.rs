@@ -1,5 +1,6 @@
 //! Light rigs as files and presets: what is read, what is refused, and that files say all of a picture.
 
+mod apart;
 mod attached;
 mod environment;
 mod files;
@@ -106,7 +107,8 @@ fn words(line: &str) -> Vec<String> {
 
 /// The flags of a recorded command: what follows the mesh, without the digests.
 fn flags(made_by: &str) -> Vec<String> {
-    let (command, digests) = made_by.split_once(" # mesh ").expect("digests");
-    assert!(digests.len() >= 16, "{made_by}");
+    let (command, comment) = made_by.split_once(" # ").expect("a comment");
+    let version = format!("catoptric {}, mesh ", env!("CARGO_PKG_VERSION"));
+    assert!(comment.strip_prefix(&version).is_some_and(|digests| digests.len() >= 16), "{made_by}");
     words(command.split_once("corner.obj ").expect("the mesh").1)
 }

@@ -35,6 +35,10 @@ fn bad_toml_is_refused_with_its_line() {
         ("[colours]\npaint = [1, 2, 3]", 2, "from 0 to 1"),
         ("[colours]\ntop = 7", 2, "#rrggbb"),
         ("preset = \"tunel\"", 1, "`tunnel`"),
+        ("preset = \"tunnel\"\n[pattern]\nrange = [1, 3]", 3, "pattern.range is for"),
+        ("preset = \"zebra\"\n[light]\nlines = [0, 0, 1]", 3, "light.lines is parallel"),
+        ("[camera]\nup = [0, 0, 0]", 2, "camera.up has no direction"),
+        ("[light]\nnormal = [1e-200, 0, 0]", 2, "light.normal is too short or too long"),
         ("[light]\n[light]\n", 2, "duplicate key"),
     ] {
         folder.write("rig.toml", text);
@@ -60,6 +64,11 @@ fn bad_json_is_refused_with_its_line() {
         ("{\n\"field\": \"zebra\"}", 2, "curvature"),
         ("{\"light\":\n{\"spacing\": -1}}", 2, "give a number above 0"),
         ("{\"light\":\n{\"normal\": [0, 0, 0]}}", 2, "light.normal has no direction"),
+        (
+            "{\"colours\": {\"paint\": \"#112233\"}, \"light\": {\"normal\": [0, 0, 0]}}",
+            1,
+            "light.normal has no direction",
+        ),
         ("{\"colors\": {}}", 1, "unknown field `colors`"),
         ("[1, 2]", 1, "see docs/RIGS.md"),
         ("{\"camera\": {\"fov\": 20}} {}", 1, "trailing"),
@@ -85,6 +94,9 @@ fn files_and_flags_that_do_not_fit_are_refused() {
         (&["--rig", "flat.toml", "--fov", "30"], "--fov does not apply"),
         (&["--rig", "tunnel", "--height", "30"], "--height applies"),
         (&["--rig", "pair.toml", "--light-lines", "0,0,2"], "--light-lines is parallel"),
+        (&["--light-normal", "1e-200,0,0"], "--light-normal is too short or too long"),
+        (&["--light-lines", "0,1e200,0"], "--light-lines is too short or too long"),
+        (&["--pattern", ""], "--pattern names nothing"),
         (&["--save-rig", "rig.yaml"], "rig.yaml: not a light rig that we write"),
         (&["--save-rig", "no-such-folder/rig.toml"], "no-such-folder"),
         (&["--light-attached", "moon"], "give object or camera"),
@@ -102,4 +114,30 @@ fn files_and_flags_that_do_not_fit_are_refused() {
     assert!(message.contains("--save-rig would overwrite"), "{message}");
     let message = folder.refused(&["lines", &mesh(), "-o", "a.json", "--save-rig", "a.json"]);
     assert!(message.contains("--save-rig would overwrite"), "{message}");
+}
+
+/// What `render` refuses of a camera, `lines` and `quality` refuse too, in the same words.
+#[test]
+fn cameras_without_a_picture_are_refused_by_all() {
+    let folder = Folder::new();
+    folder.write("steep.toml", "[camera]\nup = [0, 0, 2]\neye = [0, 0, 9]\ntarget = [0, 0, 0]");
+    for (flags, expected) in [
+        ("--up 0,0,0", "--up has no direction"),
+        ("--up 1e-200,0,0", "--up is too short or too long"),
+        ("--eye 1,2,3 --target 1,2,3", "two finite points"),
+        ("--eye 0,0,9 --target 0,0,0 --up 0,0,-1", "parallel to the line of sight"),
+        ("--eye 1e200,0,0", "too far to compute with"),
+        ("--fov 1e-300", "a pixel would span"),
+        ("--projection orthographic --height 1e-30", "a pixel would span"),
+        ("--rig steep.toml", "steep.toml: the camera's up direction"),
+    ] {
+        let mesh = mesh();
+        let messages = ["render", "lines", "quality"].map(|command| {
+            let output = if command == "lines" { "v.svg" } else { "v.png" };
+            let args = [command, &mesh, "-o", output].into_iter().chain(flags.split(' ')).collect::<Vec<_>>();
+            folder.refused(&args)
+        });
+        assert!(messages[0].contains(expected), "{flags}: {}", messages[0]);
+        assert!(messages.iter().all(|message| *message == messages[0]), "{messages:?}");
+    }
 }

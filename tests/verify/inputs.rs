@@ -65,8 +65,8 @@ fn what_is_named_and_refused_ends_the_run_before_it_begins() {
     for (words, message) in [
         (["cube.obj", "bad.obj"], "bad.obj:2: "),
         (["cube.obj", "none.obj"], "none.obj: no such file"),
-        (["cube.obj", "empty"], "empty: the folder has no mesh (.obj)"),
-        (["cube.obj", "*.usd"], "*.usd: no mesh matches (.obj)"),
+        (["cube.obj", "empty"], "empty: the folder has no mesh (.obj, .usd, .usda, .usdc, .usdz)"),
+        (["cube.obj", "*.usd"], "*.usd: no mesh matches (.obj, .usd, .usda, .usdc, .usdz)"),
         (["cube.obj", "[.obj"], "[.obj: "),
     ] {
         let output = run(folder.path(), &[&words[..], &["--json", "v.json", "--junit", "v.xml"]].concat());

@@ -140,6 +140,12 @@ impl FamilyArgs {
         Family { values, flags, left_out }
     }
 
+    /// Half the width that has lights; infinite where nothing bounds them.
+    fn half(&self, field: &Field) -> f64 {
+        let bounds = field.method.is_bounded() || self.place(&field.method) == Place::Nearest;
+        if bounds { field.light.half[0] } else { f64::INFINITY }
+    }
+
     /// Numbers of the lights, and how many the surface shows where these are not all.
     fn numbers(&self, scout: &Scout, camera: &Camera, field: &mut Field) -> (RangeInclusive<i32>, Option<i64>) {
         if let Some([first, last]) = self.lights {
@@ -147,6 +153,8 @@ impl FamilyArgs {
         }
         let spread = spread(field);
         let [low, middle, high] = scout.quantiles(&spread, camera, [0.02, 0.5, 0.98]);
+        let half = self.half(field);
+        let [low, high] = [low, high].map(|end| end.clamp(-half, half));
         if let Some(count) = self.count {
             let spacing = (high - low) / f64::from(count);
             if spacing > 0.0 && spacing.is_finite() {
@@ -159,6 +167,8 @@ impl FamilyArgs {
         let spacing = field.light.spacing;
         // Outwards: the points looked at are not all there are.
         let (first, last) = (number((least / spacing).floor()), number((greatest / spacing).ceil()));
+        let outermost = outermost(half, spacing);
+        let [first, last] = [first, last].map(|k| k.clamp(-outermost, outermost));
         let all = i64::from(last) - i64::from(first) + 1;
         if all <= MOST {
             return (first..=last, None);
@@ -177,6 +187,13 @@ fn spread(field: &Field) -> Field {
         method => method.clone(),
     };
     Field { method, ..field.clone() }
+}
+
+/// Greatest number of a light at most `half` from the middle.
+fn outermost(half: f64, spacing: f64) -> i32 {
+    let nearest = number((half / spacing).round());
+    // As `exists` has it, to the last digit.
+    if f64::from(nearest) * spacing <= half { nearest } else { nearest - 1 }
 }
 
 fn number(k: f64) -> i32 {
@@ -217,6 +234,14 @@ impl Family {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn outermost_lights_are_within_the_extents() {
+        for (half, spacing, expected) in [(1.5, 0.2, 7), (0.3, 0.1, 2), (0.05, 0.2, 0), (2.0, 0.5, 4)] {
+            assert_eq!(outermost(half, spacing), expected, "{half} {spacing}");
+        }
+        assert_eq!(outermost(f64::INFINITY, 0.1), number(f64::INFINITY));
+    }
 
     #[test]
     fn lists_are_finite_numbers() {

@@ -146,8 +146,10 @@ pub(super) fn run(args: &LinesArgs) -> Result<(), Failure> {
     args.family.check(&rig.method())?;
     if let Some(path) = &args.output {
         check_writable(path)?;
-        args.rig.check_apart(path)?;
     }
+    let mut files = args.rig.files(args.mesh.as_deref(), &rig);
+    args.output.iter().try_for_each(|path| files.write(path, "-o", "the curves"))?;
+    args.rig.check_apart(&mut files)?;
     let bar = progress("tracing".to_owned());
     let mesh = account.time("read", || load(args.mesh.as_deref()))?;
     let surface =
@@ -212,7 +214,8 @@ fn say(curves: &[Curve], tolerance: f64) {
     let mut lights: Vec<i32> = curves.iter().map(|curve| curve.light).collect();
     lights.sort_unstable();
     lights.dedup();
-    let length: f64 = curves.iter().map(Curve::length).sum();
+    // The sum of nothing is -0, which would be written so.
+    let length = curves.iter().map(Curve::length).sum::<f64>() + 0.0;
     eprintln!(
         "lines: {} curves of {} lights, {closed} of them closed, {points} points, {length:.6} world units long; chords within \
          {tolerance:.1e}",

@@ -160,8 +160,8 @@ impl Verdict<'_> {
 pub(super) fn run(args: &QualityArgs) -> Result<(), Failure> {
     let mut account = Account::default();
     args.rig.check()?;
-    args.check_files()?;
     let rig = args.rig()?;
+    args.check_files(&rig)?;
     let pattern = rig.pattern.read(&rig.method()).map_err(Failure::Bad)?;
     let bar = progress("measuring".to_owned());
     let mesh = account.time("read", || load(args.mesh.as_deref()))?;
@@ -217,22 +217,20 @@ pub(super) fn run(args: &QualityArgs) -> Result<(), Failure> {
 
 impl QualityArgs {
     /// Refuses files that could not be written, before the work.
-    fn check_files(&self) -> Result<(), Failure> {
-        if let Some(path) = &self.output {
-            if !path.extension().is_some_and(|e| e.eq_ignore_ascii_case("png")) {
-                let what = "not a picture that we write; choose a name that ends in .png";
-                return Err(Failure::Bad(format!("{}: {what}", path.display())));
-            }
-            if self.json.as_ref() == Some(path) {
-                let what = "--json would overwrite the picture; choose another name";
-                return Err(Failure::Bad(format!("{}: {what}", path.display())));
+    fn check_files(&self, rig: &Rig) -> Result<(), Failure> {
+        let is_png = |path: &PathBuf| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("png"));
+        if let Some(path) = self.output.as_ref().filter(|path| !is_png(path)) {
+            let what = "not a picture that we write; choose a name that ends in .png";
+            return Err(Failure::Bad(format!("{}: {what}", path.display())));
+        }
+        let mut files = self.rig.files(self.mesh.as_deref(), rig);
+        for (path, flag, what) in [(&self.output, "-o", "the picture"), (&self.json, "--json", "the measurements")] {
+            if let Some(path) = path {
+                check_writable(path)?;
+                files.write(path, flag, what)?;
             }
         }
-        for path in [&self.output, &self.json].into_iter().flatten() {
-            check_writable(path)?;
-            self.rig.check_apart(path)?;
-        }
-        Ok(())
+        self.rig.check_apart(&mut files)
     }
 
     /// What is said of the picture.
