@@ -11,6 +11,16 @@ fn write_grid(folder: &Folder, name: &str, value: impl Fn(i64, i64) -> i64) {
     image::ImageBuffer::<image::Luma<u16>, Vec<u16>>::from_fn(SIDE, SIDE, texel).save(folder.path(name)).expect("it");
 }
 
+/// Two families are the same curves: both are within the tolerance, 1e-4 of the diagonal (some 4), of them.
+fn assert_same(ours: &[serde_json::Value], theirs: &[serde_json::Value]) {
+    let (a, b) = (points(ours), points(theirs));
+    assert!(a.len() > 100 && b.len() > 100, "{} {}", a.len(), b.len());
+    for (points, curves) in [(&a, theirs), (&b, ours)] {
+        let off = farthest(points, curves);
+        assert!(off < 1e-3, "{off}");
+    }
+}
+
 fn curves(folder: &Folder, args: &[&str]) -> Vec<serde_json::Value> {
     let mesh = mesh();
     folder.done(&[&["lines", &mesh, "--size=64x64", "-o", "a.json"], args].concat());
@@ -58,13 +68,7 @@ fn ramps_make_reflection_lines() {
     let values = world.map(|x| x.to_string()).join(",");
     let ours = curves(&folder, &[&LIGHT[..], &["--field=curve:ramp.png=480", &format!("--values={g}")]].concat());
     let theirs = curves(&folder, &[&LIGHT[..], &["--light-size=465,465", &format!("--values={values}")]].concat());
-    let (a, b) = (points(&ours), points(&theirs));
-    assert!(a.len() > 100 && b.len() > 100, "{} {}", a.len(), b.len());
-    // Both are within the tolerance, 1e-4 of the diagonal (some 4), of the same curves.
-    for (points, curves) in [(&a, &theirs), (&b, &ours)] {
-        let off = farthest(points, curves);
-        assert!(off < 1e-3, "{off}");
-    }
+    assert_same(&ours, &theirs);
 }
 
 /// Squares of distances make circles: those of `curve:circle`, in lines and in pictures.
@@ -81,12 +85,7 @@ fn bowls_make_circles() {
         curves(&folder, &[&LIGHT[..], &["--field=curve:bowl.png=24", &format!("--values={}", list(&g))]].concat());
     let theirs =
         curves(&folder, &[&LIGHT[..], &["--field=curve:circle", &format!("--values={}", list(&|r| r))]].concat());
-    let (a, b) = (points(&ours), points(&theirs));
-    assert!(a.len() > 100 && b.len() > 100, "{} {}", a.len(), b.len());
-    for (points, curves) in [(&a, &theirs), (&b, &ours)] {
-        let off = farthest(points, curves);
-        assert!(off < 1e-3, "{off}");
-    }
+    assert_same(&ours, &theirs);
 }
 
 /// A width is fitted where none is given, recorded with the rest, and digests tell grids apart.
