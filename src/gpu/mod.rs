@@ -23,6 +23,7 @@ mod paper;
 mod passes;
 mod proxy;
 pub mod records;
+mod scenes;
 pub mod shader;
 pub mod tables;
 mod view;

@@ -105,6 +105,13 @@ impl View {
         if self.field.method.reads_curvature() && tables.content() == Content::Tails {
             return fail("curvature is read from tables in the expanded layout only (--tables expanded)".into());
         }
+        if !tables.is_resident() && self.pipeline != Pipeline::Exact {
+            let gib = tables.size() as f64 / f64::from(1 << 30);
+            return fail(format!(
+                "the tables of {} patches take {gib:.1} GiB; only the exact pipeline draws such surfaces: choose it",
+                tables.patches()
+            ));
+        }
         let Camera { size, .. } = self.camera;
         if size.iter().any(|n| !(1..=MAX_SIZE).contains(n)) {
             return fail(format!("picture size {}x{}: each side must be 1 to {MAX_SIZE} pixels", size[0], size[1]));

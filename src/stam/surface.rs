@@ -42,8 +42,7 @@ impl LimitSurface {
     /// # Errors
     /// The mesh is not valid, OpenSubdiv refuses it, or a face stays without a closed form.
     pub fn new(mesh: &SubdivMesh) -> Result<Self, PatchError> {
-        let (patches, refiner) = Patches::new(mesh)?;
-        let points = refiner.interpolate(&mesh.points)?;
+        let (patches, points) = Patches::with_points(mesh)?;
         let tables = patches.classes().par_iter().map(|&class| ClassTable::new(class)).collect();
         Ok(Self {
             patches: Arc::new(patches),
@@ -86,10 +85,9 @@ impl LimitSurface {
     /// A box that encloses the limit surface: that of the refined points that control it (all rules are convex
     /// combinations). `None` for a surface without patches.
     pub fn bounds(&self) -> Option<[DVec3; 2]> {
-        let used = (0..self.patches().len()).flat_map(|patch| self.patches.support(patch));
-        used.filter(|&&v| v != PHANTOM).map(|&v| self.points[v as usize]).fold(None, |bounds: Option<[DVec3; 2]>, p| {
-            Some(bounds.map_or([p, p], |[low, high]| [low.min(p), high.max(p)]))
-        })
+        let used = (0..self.patches().len()).into_par_iter().flat_map_iter(|patch| self.patches.support(patch));
+        let boxes = used.filter(|&&v| v != PHANTOM).map(|&v| [self.points[v as usize]; 2]);
+        boxes.reduce_with(|[low, high], [a, b]| [low.min(a), high.max(b)])
     }
 
     /// The patch at (u,v), each 0 to 1, of a ptex face, and the patch-local parameters; `None` in a hole.
@@ -108,6 +106,13 @@ impl LimitSurface {
     /// The kind of a patch.
     pub fn kind(&self, patch: usize) -> PatchKind {
         self.patches()[patch].kind
+    }
+
+    /// Some control point of a patch, phantom points left out.
+    pub(crate) fn control_point(&self, patch: usize) -> DVec3 {
+        // Inside the net of a regular patch, and the vertex itself of an irregular one: never a phantom point.
+        let inside = if self.class(patch).is_some() { 0 } else { slot(0, 0) };
+        self.points[self.patches.support(patch)[inside] as usize]
     }
 
     /// Refined vertices that control a patch, [`PHANTOM`] where there is none.
