@@ -8,6 +8,7 @@ use super::view::{Tile, View};
 use super::{GpuError, Pipeline, Stage, Tables, paper};
 use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
+use std::borrow::Cow;
 use std::time::{Duration, Instant};
 
 /// Patch index of a pixel that sees no surface.
@@ -142,7 +143,13 @@ fn draw<T: bytemuck::Pod>(
     let size = view.camera.size;
     let mut summary = (view.pipeline == Pipeline::Exact).then(Summary::default);
     let mut whole = vec![T::zeroed(); size[0] as usize * size[1] as usize];
-    for tile in Tile::cover(size, view.samples, scenes.side(Tile::PICTURE_SIDE)) {
+    let side = scenes.side(Tile::PICTURE_SIDE);
+    let tiles = match size.iter().all(|&n| n * view.samples <= side) {
+        true => Tile::cover(size, view.samples, side),
+        false => Tile::cover(size, view.samples, (side - 2 * view.samples).max(view.samples)),
+    };
+    for own in tiles {
+        let tile = own.grown(size);
         let mut visible = Visible::new(device, &tile, view.pipeline);
         let picture = PictureTargets::new(device, &tile, colour);
         let scene = &scenes.see(passes, &mut visible, &tile, &mut timings)?;
@@ -153,11 +160,12 @@ fn draw<T: bytemuck::Pod>(
         timings.time("resolve", || passes::resolve::run(device, passes, scene, &picture, &tile, colour))?;
         if let (Some(summary), Some(texture)) = (&mut summary, &visible.certificate) {
             let bits: Vec<u32> = timings.time("certificates", || device.read_texture(texture))?;
+            let bits = crop(&bits, [tile.origin, tile.size], [own.origin, own.size]);
             *summary = summary.and(timings.time("certificates", || Summary::of_bits(&bits)));
         }
         let pixels: Vec<T> = timings.time("read back", || device.read_texture(&picture.colour))?;
-        let [origin, tile_size] = tile.pixels();
-        paste(&mut whole, size, &pixels, origin, tile_size);
+        let [origin, own_size] = own.pixels();
+        paste(&mut whole, size, &crop(&pixels, tile.pixels(), own.pixels()), origin, own_size);
     }
     Ok(Drawn { pixels: whole, summary, timings })
 }
@@ -270,6 +278,16 @@ pub(super) fn read_tile(
     };
     paste(&mut image.certificate, size, &certificate, tile.origin, tile.size);
     Ok(())
+}
+
+/// The part of a rectangle, given by origin and size, that lies in a smaller one.
+fn crop<'a, T: Copy>(values: &'a [T], [origin, size]: [[u32; 2]; 2], [inner, part]: [[u32; 2]; 2]) -> Cow<'a, [T]> {
+    if size == part {
+        return Cow::Borrowed(values);
+    }
+    let [left, top] = [0, 1].map(|k| (inner[k] - origin[k]) as usize);
+    let rows = values.chunks_exact(size[0] as usize).skip(top).take(part[1] as usize);
+    Cow::Owned(rows.flat_map(|row| &row[left..left + part[0] as usize]).copied().collect())
 }
 
 /// Copies a rectangle into a picture.

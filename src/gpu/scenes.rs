@@ -53,7 +53,7 @@ impl<'a> Scenes<'a> {
     pub fn side(&self, largest: u32) -> u32 {
         match self.whole {
             Some(_) => largest,
-            None => largest.min((self.tables.largest_part().isqrt() as u32).max(self.view.samples)),
+            None => largest.min((self.tables.largest_part().isqrt() as u32).max(3 * self.view.samples)),
         }
     }
 

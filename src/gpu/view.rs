@@ -350,6 +350,13 @@ impl Tile {
         starts(total[1]).flat_map(|y| starts(total[0]).map(move |x| tile(x, y))).collect()
     }
 
+    /// The tile and a pixel round it, as far as a picture of `size` pixels goes: shading looks at neighbours.
+    pub fn grown(&self, size: [u32; 2]) -> Tile {
+        let low = self.origin.map(|n| n.saturating_sub(self.samples));
+        let high = [0, 1].map(|k| (self.origin[k] + self.size[k] + self.samples).min(size[k] * self.samples));
+        Tile { origin: low, size: [0, 1].map(|k| high[k] - low[k]), ..*self }
+    }
+
     /// First pixel and size in pixels.
     pub fn pixels(&self) -> [[u32; 2]; 2] {
         [self.origin, self.size].map(|v| v.map(|n| n / self.samples))

@@ -309,6 +309,11 @@ impl Patches {
         &self.vertices[first..first + length]
     }
 
+    /// The supports of all patches.
+    pub(crate) fn supports(&self) -> &[u32] {
+        &self.vertices
+    }
+
     /// Lets another vertex be point `point` of a patch's support, and of those that share it (strips).
     pub(crate) fn set_support(&mut self, patch: usize, point: usize, vertex: u32) {
         let first = self.supports[patch].first as usize;

@@ -85,9 +85,12 @@ impl LimitSurface {
     /// A box that encloses the limit surface: that of the refined points that control it (all rules are convex
     /// combinations). `None` for a surface without patches.
     pub fn bounds(&self) -> Option<[DVec3; 2]> {
-        let used = (0..self.patches().len()).into_par_iter().flat_map_iter(|patch| self.patches.support(patch));
-        let boxes = used.filter(|&&v| v != PHANTOM).map(|&v| [self.points[v as usize]; 2]);
-        boxes.reduce_with(|[low, high], [a, b]| [low.min(a), high.max(b)])
+        let both = |[low, high]: [DVec3; 2], [a, b]: [DVec3; 2]| [low.min(a), high.max(b)];
+        let of = |vertices: &[u32]| {
+            let used = vertices.iter().filter(|&&vertex| vertex != PHANTOM);
+            used.map(|&vertex| [self.points[vertex as usize]; 2]).reduce(both)
+        };
+        self.patches.supports().par_chunks(1 << 16).filter_map(of).reduce_with(both)
     }
 
     /// The patch at (u,v), each 0 to 1, of a ptex face, and the patch-local parameters; `None` in a hole.

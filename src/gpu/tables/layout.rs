@@ -95,6 +95,8 @@ pub(super) struct Plan {
     pub texels: u64,
     /// Bytes of all tables.
     pub bytes: u64,
+    /// Bytes of what classes share.
+    pub matrices: u64,
     /// Most bytes of a patch.
     pub largest_patch: u64,
 }
@@ -125,7 +127,8 @@ impl Plan {
 
     fn of(census: &Census, layout: TableLayout, bases: Arc<Vec<Option<Basis>>>, has_gregory: bool) -> Plan {
         let expanded = layout.expanded_levels();
-        let mut plan = Plan { layout, expanded, bases, has_gregory, texels: 0, bytes: 0, largest_patch: 0 };
+        let mut plan =
+            Plan { layout, expanded, bases, has_gregory, texels: 0, bytes: 0, matrices: 0, largest_patch: 0 };
         let matrices: usize = (0..plan.bases.len()).map(|class| plan.matrix_texels(class)).sum();
         let irregular: usize =
             census.classes.iter().enumerate().map(|(class, &count)| count * plan.irregular_texels(Some(class))).sum();
@@ -133,9 +136,10 @@ impl Plan {
             + census.gregory * GREGORY_TEXELS
             + census.classless * plan.irregular_texels(None);
         plan.texels = (matrices + irregular + rest) as u64;
-        let classes = (0..census.classes.len()).map(Some).chain([None]).map(|class| plan.irregular_texels(class));
-        let texels = classes.chain([REGULAR_TEXELS, GREGORY_TEXELS]).max().unwrap_or(0);
-        plan.largest_patch = 16 * (1 + texels as u64);
+        plan.matrices = 16 * matrices as u64;
+        let classes = census.classes.iter().enumerate().filter(|&(_, &count)| count > 0).map(|(class, _)| Some(class));
+        let irregular = classes.chain((census.classless > 0).then_some(None)).map(|class| plan.irregular_texels(class));
+        plan.largest_patch = 16 * (1 + irregular.max().unwrap_or(0).max(GREGORY_TEXELS) as u64);
         plan.bytes =
             16 * (census.patches as u64 + plan.texels) + 8 * u64::from(SCALE_LEVELS) * census.eigenvalues as u64;
         plan

@@ -52,6 +52,8 @@ pub struct Tables {
     bounds: [DVec3; 2],
     plan: Plan,
     unit: f64,
+    /// Bytes that may be on the adapter.
+    room: u64,
     /// Where these are the tables of a part: its patches.
     part: Option<Arc<[u32]>>,
 }
@@ -126,7 +128,7 @@ impl Tables {
 
     /// Patches whose tables are sure to fit.
     pub(super) fn largest_part(&self) -> usize {
-        (BUDGET / self.plan.largest_patch) as usize
+        (self.room.saturating_sub(self.plan.matrices) / self.plan.largest_patch) as usize
     }
 
     /// Views of patch records, points and scales: bindings 0, 1 and 2 of group 0 in every pass that evaluates.
@@ -170,9 +172,10 @@ pub(super) fn upload<S: PatchSource + ?Sized>(
     if plan.bytes <= BUDGET && plan.texels <= limit {
         return fill(device, source, plan, unit);
     }
+    let room = BUDGET.min(16 * limit);
     let places: Vec<_> = (0..source.count()).into_par_iter().map(|patch| source.place(patch)).collect();
     let (origins, cells) = places.into_iter().unzip();
-    Ok(Tables { textures: None, origins, cells, source: source.shared(), bounds, plan, unit, part: None })
+    Ok(Tables { textures: None, origins, cells, source: source.shared(), bounds, plan, unit, room, part: None })
 }
 
 /// Builds planned tables on the adapter.
@@ -184,5 +187,5 @@ fn fill<S: PatchSource + ?Sized>(device: &Device, source: &S, plan: Plan, unit: 
         scales: device.table("the powers of lambda", &scales, wgpu::TextureFormat::Rg32Float)?,
     };
     let (source, bounds) = (source.shared(), source.bounds());
-    Ok(Tables { textures: Some(textures), origins, cells, source, bounds, plan, unit, part: None })
+    Ok(Tables { textures: Some(textures), origins, cells, source, bounds, room: plan.bytes, plan, unit, part: None })
 }
