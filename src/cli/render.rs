@@ -7,8 +7,9 @@ use super::field::{ColourArgs, FieldArgs, PatternArgs};
 use super::frames::FramesArgs;
 use super::patches::PatchesArgs;
 use super::rig::RigArgs;
+use super::scene::SceneArgs;
 use super::settings::{made_by, mesh_digest};
-use super::{Failure, Steps, load, progress};
+use super::{Failure, Steps, progress};
 use crate::field::{CurvatureKind, Method, Pattern, PlaneCurve, Scout};
 use crate::gpu::{Gpu, MAX_ENLARGE, MAX_PROXY_LEVEL, MAX_SAMPLES, Pipeline, Stage, TableLayout, Tables, View, tables};
 use crate::output::{
@@ -25,6 +26,8 @@ use std::path::{Path, PathBuf};
 pub(super) struct RenderArgs {
     /// Control mesh (.obj, .usd, .usda, .usdc or .usdz)
     pub(super) mesh: Option<PathBuf>,
+    #[command(flatten)]
+    pub(super) scene: SceneArgs,
     /// Picture to write: .png, or .exr with linear colour, position, normal, ptex parameters, field and residual
     #[arg(short, long, value_name = "FILE", default_value = "view.png")]
     pub(super) output: PathBuf,
@@ -165,7 +168,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     args.rig.check_apart(&mut files)?;
     let pattern = rig.pattern.read(&rig.method()).map_err(Failure::Bad)?;
     let bar = progress("drawing".to_owned());
-    let mesh = account.time("read", || load(args.mesh.as_deref()))?;
+    let mesh = account.time("read", || args.scene.load(args.mesh.as_deref()))?;
     let surface =
         account.time("patches and classes", || LimitSurface::new(&mesh)).map_err(|e| Failure::of(&mesh, e))?;
     let scout = account.time("fit", || Scout::new(&surface)).ok_or_else(|| {

@@ -11,6 +11,7 @@ use std::fmt::{Display, Write};
 use std::path::Path;
 
 /// A command in one line, as a shell takes it, that makes a file again.
+#[derive(Default)]
 pub(super) struct CommandLine(String);
 
 impl CommandLine {
@@ -38,6 +39,11 @@ impl CommandLine {
     /// A flag and its value.
     pub(super) fn flag(&mut self, name: &str, value: impl Display) {
         self.word(&format!("--{name}={value}"));
+    }
+
+    /// The words so far.
+    pub(super) fn into_words(self) -> String {
+        self.0
     }
 
     /// A flag without a value.
@@ -135,6 +141,7 @@ pub(super) fn method_name(method: &Method) -> String {
 /// `mesh`: the digest of the mesh ([`mesh_digest`]); `rig`: that of `view`; `pattern`: the name of its pattern.
 pub(super) fn made_by(args: &RenderArgs, mesh: u64, rig: &FittedRig, pattern: &PatternName, view: &View) -> String {
     let mut line = CommandLine::new("render", args.mesh.as_deref());
+    args.scene.record(&mut line);
     line.camera(&rig.camera);
     line.field(rig);
     line.pattern(&view.pattern, pattern);

@@ -10,11 +10,6 @@ impl SubdivMesh {
         self.face_sizes.len()
     }
 
-    /// Number of ptex faces, holes included: a quad is one, an n-gon n.
-    pub fn ptex_count(&self) -> usize {
-        self.face_sizes.iter().map(|&size| if size == 4 { 1 } else { size as usize }).sum()
-    }
-
     /// Number of control points, those that no face uses included.
     pub fn vertex_count(&self) -> usize {
         self.points.len()

@@ -413,6 +413,6 @@ pub fn sample() -> SubdivMesh {
         holes: Vec::new(),
         boundary: Boundary::EdgeAndCorner,
         creasing: Creasing::Uniform,
-        up: None,
+        ..SubdivMesh::default()
     }
 }

@@ -5,6 +5,8 @@ mod common;
 
 mod blender;
 mod corrupt;
+mod fixtures;
+mod prims;
 mod program;
 mod refused;
 mod schema;

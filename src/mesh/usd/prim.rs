@@ -6,6 +6,17 @@ use super::value::Node;
 use crate::mesh::validate::{Source, check};
 use crate::mesh::{Boundary, Corner, Crease, MeshError, SubdivMesh};
 
+/// Whether the prim has no faces at all.
+pub(super) fn is_empty(node: &Node<'_>) -> Result<bool, MeshError> {
+    let none = |name| node.indices(name).map(|values| values.is_none_or(|values| values.is_empty()));
+    Ok(none("faceVertexCounts")? && none("faceVertexIndices")?)
+}
+
+/// Whether a skeleton or blend shapes would move the points (`UsdSkelBindingAPI`).
+pub(super) fn is_posed(node: &Node<'_>) -> Result<bool, MeshError> {
+    Ok(node.has_value("primvars:skel:jointIndices")? || node.has_value("skel:blendShapes")?)
+}
+
 /// Reads and validates the mesh, with its points where `world` puts them.
 pub(super) fn read(node: &Node<'_>, world: DMat4) -> Result<SubdivMesh, MeshError> {
     scheme(node)?;

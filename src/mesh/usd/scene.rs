@@ -4,38 +4,41 @@ use std::collections::HashMap;
 
 use crate::mesh::error::{Place, Spot};
 use crate::mesh::validate::check_counts;
-use crate::mesh::{Boundary, Corner, Crease, MeshError, SubdivMesh};
+use crate::mesh::{Boundary, Corner, Crease, MeshError, Part, SubdivMesh};
 
 /// Sharpness from which a vertex never decays.
 const INFINITE: f32 = 10.0;
 
-/// One mesh of all, in their order; `file` names it in messages.
+/// One mesh of all, in their order, each under the path of its prim; `file` names it in messages.
 ///
 /// `EdgeAndCorner` is `EdgeOnly` with the vertices of a single face infinitely sharp, so meshes of both kinds become
 /// one of `EdgeOnly`; meshes without a boundary go with either.
 ///
 /// # Errors
 /// A mesh whose boundary is not interpolated beside one whose is, and more points or faces than OpenSubdiv counts.
-pub(super) fn join(meshes: Vec<SubdivMesh>, file: &str, name: &str) -> Result<SubdivMesh, MeshError> {
+pub(super) fn join(meshes: Vec<(String, SubdivMesh)>, file: &str, name: &str) -> Result<SubdivMesh, MeshError> {
     let mut scene = SubdivMesh { name: name.to_owned(), ..SubdivMesh::default() };
     scene.boundary = match &meshes[..] {
-        [one] => one.boundary,
+        [(_, one)] => one.boundary,
         _ => common_rule(&meshes)?,
     };
-    for mut mesh in meshes {
+    for (name, mut mesh) in meshes {
         if mesh.boundary == Boundary::EdgeAndCorner && scene.boundary == Boundary::EdgeOnly {
             sharpen_lone_vertices(&mut mesh);
         }
+        let before = [scene.face_count(), scene.points.len()].map(|count| count as u32);
         append(&mut scene, mesh);
         // Indices fit as long as their number does.
         check_counts(&scene, &Place::with(file, Spot::Whole))?;
+        let [faces, points] = [scene.face_count(), scene.points.len()].map(|count| count as u32);
+        scene.parts.push(Part { name, faces: before[0]..faces, points: before[1]..points });
     }
     Ok(scene)
 }
 
-fn common_rule(meshes: &[SubdivMesh]) -> Result<Boundary, MeshError> {
+fn common_rule(meshes: &[(String, SubdivMesh)]) -> Result<Boundary, MeshError> {
     let mut rules: Vec<(&SubdivMesh, Boundary)> = Vec::new();
-    for mesh in meshes {
+    for (_, mesh) in meshes {
         if rules.iter().all(|&(_, rule)| rule != mesh.boundary) && has_boundary(mesh) {
             rules.push((mesh, mesh.boundary));
         }

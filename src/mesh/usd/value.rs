@@ -25,11 +25,17 @@ impl Node<'_> {
             Ok(None) => attribute.get_at::<Value>(TimeCode::EARLIEST),
             value => value,
         };
-        let value = value.map_err(|error| MeshError::UsdUnreadable {
-            at: self.place(),
-            reason: format!("{name}: {}", one_line(&error)),
-        })?;
+        let value = value.map_err(|error| self.unreadable(name, &error))?;
         Ok(value.filter(|value| !matches!(value, Value::None | Value::ValueBlock)))
+    }
+
+    /// Whether an attribute has a value or time samples, whatever they are.
+    pub(super) fn has_value(&self, name: &str) -> Result<bool, MeshError> {
+        self.prim.attribute(name).has_authored_value().map_err(|error| self.unreadable(name, &error))
+    }
+
+    fn unreadable(&self, name: &str, error: &dyn std::error::Error) -> MeshError {
+        MeshError::UsdUnreadable { at: self.place(), reason: format!("{name}: {}", one_line(error)) }
     }
 
     /// An attribute that a mesh cannot be without.
