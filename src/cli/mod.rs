@@ -10,6 +10,7 @@ mod frames;
 mod glints;
 mod info;
 mod lines;
+mod numbered;
 mod patches;
 mod quality;
 mod render;

@@ -17,12 +17,12 @@ mod tags;
 mod usd;
 mod validate;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 
 pub use error::{MeshError, Place, Spot};
-pub use parts::{Part, PtexParts};
+pub use parts::{Part, PtexParts, Repeat};
 pub use sample::sample;
 pub use validate::{MAX_COORDINATE, MAX_VALENCE};
 
@@ -50,19 +50,54 @@ pub fn read(path: &Path) -> Result<SubdivMesh, MeshError> {
 pub struct Choice {
     /// Paths of prims: their meshes, and those of the prims below them; all if there are none.
     pub prims: Vec<String>,
+    /// Time code at which attributes are read: between two samples numbers are interpolated, all else is that of the sample
+    /// before. `None`: the default time, and the first sample of what has samples alone.
+    pub time: Option<f64>,
 }
 
-/// As [`read`], a part of the file.
+/// As [`read`], a part of the file, at a time.
 ///
 /// # Errors
-/// As [`read`]; a prim that is not there, or has no mesh that is shown; prims of an OBJ.
+/// As [`MeshFile::open`] and [`MeshFile::read`].
 pub fn read_choice(path: &Path, choice: &Choice) -> Result<SubdivMesh, MeshError> {
-    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
-    match extension.as_deref() {
-        Some("obj") if !choice.prims.is_empty() => Err(MeshError::NoPrims { at: Place::file(path) }),
-        Some("obj") => obj::read(path),
-        Some("usd" | "usda" | "usdc" | "usdz") => usd::read(path, choice),
-        _ => Err(MeshError::UnsupportedFormat { at: Place::file(path) }),
+    MeshFile::open(path)?.read(choice)
+}
+
+/// A mesh file that is read more than once: a stage stays open between times.
+#[derive(Debug)]
+pub struct MeshFile(Format);
+
+#[derive(Debug)]
+enum Format {
+    Obj(PathBuf),
+    Usd(Box<usd::File>),
+}
+
+impl MeshFile {
+    /// Opens the file; the extension says the format.
+    ///
+    /// # Errors
+    /// A stage that cannot be read, or is not of its format. An OBJ is not looked at.
+    pub fn open(path: &Path) -> Result<Self, MeshError> {
+        let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+        match extension.as_deref() {
+            Some("obj") => Ok(Self(Format::Obj(path.to_owned()))),
+            Some("usd" | "usda" | "usdc" | "usdz") => Ok(Self(Format::Usd(Box::new(usd::File::open(path)?)))),
+            _ => Err(MeshError::UnsupportedFormat { at: Place::file(path) }),
+        }
+    }
+
+    /// Reads and validates what is chosen.
+    ///
+    /// # Errors
+    /// As [`read`]; a prim that is not there, or has no mesh that is shown; prims or a time of an OBJ.
+    pub fn read(&self, choice: &Choice) -> Result<SubdivMesh, MeshError> {
+        match &self.0 {
+            Format::Obj(path) if !choice.prims.is_empty() => Err(MeshError::NoPrims { at: Place::file(path) }),
+            Format::Obj(path) if choice.time.is_some() => Err(MeshError::NoTime { at: Place::file(path) }),
+            Format::Obj(path) => obj::read(path),
+            Format::Usd(file) => file.read(choice),
+        }
     }
 }
 

@@ -2,10 +2,12 @@
 
 use std::ops::Range;
 
+use glam::DAffine3;
+
 use super::SubdivMesh;
 
 /// A mesh of a scene whose meshes were read as one.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Part {
     /// Path of its prim.
     pub name: String,
@@ -13,6 +15,17 @@ pub struct Part {
     pub faces: Range<u32>,
     /// Its points among those of the whole.
     pub points: Range<u32>,
+    /// The earlier part that it is in another place, if it is one.
+    pub repeats: Option<Repeat>,
+}
+
+/// An instance: a part with the topology of an earlier one that repeats none, and its points moved.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Repeat {
+    /// Index of the earlier part.
+    pub part: u32,
+    /// What moves its points to those of the instance, to rounding. It does not mirror.
+    pub transform: DAffine3,
 }
 
 /// Which part each ptex face is of; see [`SubdivMesh::ptex_parts`].

@@ -83,6 +83,16 @@ impl SubdivMesh {
     }
 }
 
+impl SubdivMesh {
+    /// The checks of [`validate`](Self::validate) that depend on where the points are.
+    ///
+    /// # Errors
+    /// The first point that is not finite or too far away.
+    pub fn validate_points(&self) -> Result<(), MeshError> {
+        check_points(self, &Source { name: &self.name, lines: None, first_vertex: 0 })
+    }
+}
+
 /// As [`SubdivMesh::validate`], with places as the source names them.
 pub(super) fn check(mesh: &SubdivMesh, source: &Source<'_>) -> Result<(), MeshError> {
     check_counts(mesh, &source.whole())?;

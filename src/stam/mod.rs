@@ -8,12 +8,14 @@ mod class;
 mod curvature;
 mod evaluate;
 mod modes;
+mod moving;
 mod rings;
 mod rows;
 mod surface;
 
 pub use class::{ClassTable, LEVELS, WINDOW_POINTS};
 pub use curvature::Curvature;
+pub use moving::{MoveError, MovingSurface};
 pub use rings::{Grid, Rings, WINDOWS};
 pub use surface::{LimitSurface, Net};
 

@@ -3,7 +3,7 @@
 use super::LimitSurface;
 use crate::mesh::{MeshError, SubdivMesh};
 use crate::osd::Refiner;
-use crate::patch::{PatchError, Patches};
+use crate::patch::PatchError;
 
 /// Why a surface was not moved.
 #[derive(Debug, thiserror::Error)]
@@ -38,8 +38,7 @@ impl MovingSurface {
     /// # Errors
     /// As [`LimitSurface::new`].
     pub fn new(mesh: &SubdivMesh) -> Result<Self, PatchError> {
-        let (patches, refiner) = Patches::new(mesh)?;
-        let surface = LimitSurface::of(patches, refiner.interpolate(&mesh.points)?, mesh.diagonal());
+        let (surface, refiner) = LimitSurface::with_refiner(mesh)?;
         let topology = SubdivMesh { points: Vec::new(), notes: Vec::new(), ..mesh.clone() };
         Ok(Self { refiner, topology, vertices: mesh.points.len(), surface })
     }
@@ -60,7 +59,7 @@ impl MovingSurface {
         }
         mesh.validate_points()?;
         let points = self.refiner.interpolate(&mesh.points)?;
-        self.surface = self.surface.with_refined(points, mesh.diagonal());
+        self.surface = self.surface.moved(points, mesh.diagonal());
         Ok(&self.surface)
     }
 

@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 use catoptric::mesh::{self, SubdivMesh};
 use glam::DVec3;
 
-use crate::fixtures::{assert_attributes, assert_same_surface, distance, expected, folder, read_obj, read_prim, samples};
+use crate::fixtures::{
+    assert_attributes, assert_same_surface, distance, expected, folder, read_obj, read_prim, samples,
+};
 
 fn file(extension: &str) -> Option<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/meshes/blender");

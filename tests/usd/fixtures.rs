@@ -209,7 +209,9 @@ fn fifty_random_meshes_are_as_usd_core_reads_them() {
             }
         }
     }
-    println!("{compared} meshes, {creases} creased edges, {identical} without transform; points at most {worst:.1e} of their size off");
+    println!(
+        "{compared} meshes, {creases} creased edges, {identical} without transform; points at most {worst:.1e} of their size off"
+    );
     assert_eq!(compared, 150);
     assert!(creases > 300, "{creases} creased edges");
 }

@@ -10,6 +10,7 @@ mod prims;
 mod program;
 mod refused;
 mod schema;
+mod time;
 mod transforms;
 mod twins;
 

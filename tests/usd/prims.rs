@@ -35,7 +35,7 @@ fn parts_are_the_prims_in_order() {
     let mesh = accepted(&scene());
     assert_eq!(names(&mesh), ["/floor", "/group/house", "/group/square", "/group2"]);
     let [_, house, ..] = &mesh.parts[..] else { panic!("four parts") };
-    assert_eq!(*house, Part { name: "/group/house".to_owned(), faces: 1..3, points: 4..9 });
+    assert_eq!(*house, Part { name: "/group/house".to_owned(), faces: 1..3, points: 4..9, repeats: None });
     // A quad is one ptex face, a triangle three.
     let parts = mesh.ptex_parts();
     let of: Vec<_> = (0..8).map(|ptex| parts.name(ptex)).collect();
@@ -74,7 +74,9 @@ fn prims_without_faces_are_passed_over_beside_others() {
         "point3f[] points = [(0, 0, 0)]\nint[] faceVertexCounts = []",
         "",
     ];
-    for (empty, reason) in empties.into_iter().zip(["the mesh has no vertices", "without faceVertexIndices", "without points"]) {
+    for (empty, reason) in
+        empties.into_iter().zip(["the mesh has no vertices", "without faceVertexIndices", "without points"])
+    {
         assert_eq!(names(&accepted(&(prim("none", empty) + &prim("m", SQUARE)))), ["/m"]);
         let message = refusal(&prim("none", empty));
         assert!(message.starts_with("mesh.usda: /none: ") && message.contains(reason), "{message}");
@@ -98,8 +100,7 @@ fn run(folder: &Path, args: &[&str]) -> Output {
 
 fn json(told: &Output, path: Option<&Path>) -> Value {
     let text = path.map_or_else(|| told.stdout.clone(), |path| fs::read(path).expect("a file"));
-    serde_json::from_slice(&text)
-        .unwrap_or_else(|error| panic!("{error}: {}", String::from_utf8_lossy(&told.stderr)))
+    serde_json::from_slice(&text).unwrap_or_else(|error| panic!("{error}: {}", String::from_utf8_lossy(&told.stderr)))
 }
 
 #[test]
@@ -116,9 +117,12 @@ fn the_program_names_prims() {
 
     let info = json(&run(folder, &["info", "mesh.usda", "--json"]), None);
     assert_eq!(info["prims"][1]["prim"], "/b");
-    assert_eq!((&info["meters_per_unit"], &info["prims"][1]["ptex_faces"]), (&0.001.into(), &serde_json::json!([4, 4])));
+    assert_eq!(
+        (&info["meters_per_unit"], &info["prims"][1]["ptex_faces"]),
+        (&0.001.into(), &serde_json::json!([4, 4]))
+    );
     let text = String::from_utf8(run(folder, &["info", "mesh.usda"]).stdout).expect("text");
-    assert!(text.contains("/b: 2 faces, ptex faces 4 to 7") && text.contains("0.001 m"), "{text}");
+    assert!(text.contains("/b (faces: 2; ptex faces: 4 to 7)") && text.contains("0.001 m"), "{text}");
     let alone = json(&run(folder, &["info", "mesh.usda", "--json", "--prim", "/b"]), None);
     assert_eq!((&alone["faces"], alone["prims"].as_array().map(Vec::len)), (&2.into(), Some(1)));
 
@@ -154,8 +158,9 @@ fn verify_names_prims() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let folder = folder.path();
     fs::write(folder.join("mesh.usda"), HEADER.to_owned() + &scene()).expect("a file");
-    let planted = ["--plant", "point:4", "--prim", "/group"];
-    let told = run(folder, &[&["verify", "mesh.usda", "--json", "report.json", "--size", "64x64"][..], &planted].concat());
+    let planted = ["--plant", "point:16", "--prim", "/group"];
+    let told =
+        run(folder, &[&["verify", "mesh.usda", "--json", "report.json", "--size", "64x64"][..], &planted].concat());
     assert_eq!(told.status.code(), Some(1), "{}", String::from_utf8_lossy(&told.stderr));
     let report = json(&told, Some(&folder.join("report.json")));
     assert_eq!(report["meshes"][0]["failures"]["worst"][0]["prim"], "/group/square");

@@ -58,7 +58,7 @@ fn expected(mesh: &SubdivMesh) -> SubdivMesh {
         points: mesh.points.iter().map(round).collect(),
         up: Some(DVec3::Y),
         meters_per_unit: Some(0.01),
-        parts: vec![Part { name: "/m".to_owned(), faces, points }],
+        parts: vec![Part { name: "/m".to_owned(), faces, points, repeats: None }],
         ..mesh.clone()
     }
 }

@@ -217,7 +217,7 @@ fn describe(info: &Info) -> String {
     for Prim { prim, faces, ptex_faces, .. } in &info.prims {
         let [first, count] = ptex_faces;
         let end = first + count.saturating_sub(1);
-        rows.push(("  prim", format!("{prim}: {} faces, ptex faces {first} to {end}", faces[1])));
+        rows.push(("  prim", format!("{prim} (faces: {}; ptex faces: {first} to {end})", faces[1])));
     }
     rows.extend(info.meters_per_unit.map(|meters| ("unit", format!("{meters} m (the stage's; nothing is converted)"))));
     rows.extend(info.up.map(|[_, y, _]| ("up", if y > 0.5 { "Y" } else { "Z" }.to_owned())));

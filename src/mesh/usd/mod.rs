@@ -1,19 +1,22 @@
 //! USD (usda, usdc, usdz), by the openusd crate, which composes the stage: references, payloads, variants, instances.
 //!
 //! Every Mesh prim that is visible and of purpose default or render counts, with its points in world space, in the units
-//! of the stage. Values are those at the default time; where an attribute has time samples alone, the first counts.
+//! of the stage. Values are those at the time that was asked for, else at the default time; where an attribute has time
+//! samples alone, the first counts.
 //! What skeletons and blend shapes would do to points is passed over with a note, other primitives, subsets and primvars
 //! without one. Prims without faces are passed over where there are others.
 //!
 //! Schema: `UsdGeomMesh`, `UsdGeomImageable` and `UsdGeomXformable` of OpenUSD.
 
+mod instances;
 mod prim;
 mod scene;
 mod value;
 mod xform;
 
 use std::collections::HashMap;
-use std::fs::File;
+use std::fmt;
+use std::fs;
 use std::io::{ErrorKind, Read};
 use std::path::Path;
 
@@ -23,6 +26,7 @@ use openusd::usd::{Prim, PrimPredicate, Stage};
 
 use super::error::{Place, Spot, quote};
 use super::{Choice, MeshError, SubdivMesh};
+use scene::Placed;
 use value::{Node, one_line};
 
 /// What a prim hands down to those below it.
@@ -43,8 +47,8 @@ impl State {
 /// Meshes of the stage, as they are found.
 #[derive(Default)]
 struct Found {
-    /// Those that were read, with the paths of their prims.
-    meshes: Vec<(String, SubdivMesh)>,
+    /// Those that were read.
+    meshes: Vec<Placed>,
     /// The first one without faces, and where it stands. Exporters leave such behind, so others do without it.
     empty: Option<(sdf::Path, DMat4)>,
     /// Those that are shown, whether they were asked for or not.
@@ -53,41 +57,64 @@ struct Found {
     posed: Option<(String, usize)>,
 }
 
-/// Reads and validates the meshes of the file that are chosen, as one; see [`super::read_choice`].
-pub(super) fn read(path: &Path, choice: &Choice) -> Result<SubdivMesh, MeshError> {
-    let at = || Place::file(path);
-    check_readable(path)?;
-    let unreadable = |error: openusd::Error| MeshError::UsdUnreadable { at: at(), reason: one_line(&error) };
-    let absolute = std::path::absolute(path).map_err(|error| MeshError::Unreadable { at: at(), error })?;
-    let absolute = absolute.to_str().ok_or_else(|| MeshError::PathNotText { at: at() })?;
-    let stage = Stage::open(absolute).map_err(unreadable)?;
-    let mut paths = Vec::new();
-    stage.traverse(PrimPredicate::DEFAULT_PROXIES, |path| paths.push(path.clone())).map_err(unreadable)?;
-    if let Some(error) = stage.composition_errors().first() {
-        return Err(MeshError::UsdIncomplete { at: at(), reason: one_line(error) });
+/// A stage that is open, and its prims.
+pub(super) struct File {
+    stage: Stage,
+    paths: Vec<sdf::Path>,
+    /// How messages name it.
+    file: String,
+    /// Its stem.
+    name: String,
+}
+
+impl fmt::Debug for File {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("File").field("file", &self.file).field("prims", &self.paths.len()).finish_non_exhaustive()
     }
-    let reader = Reader { stage, file: path.display().to_string(), choice };
-    let mut states = HashMap::new();
-    let mut found = Found::default();
-    for path in paths {
-        reader.visit(path, &mut states, &mut found)?;
+}
+
+impl File {
+    /// Composes the stage.
+    pub(super) fn open(path: &Path) -> Result<Self, MeshError> {
+        let at = || Place::file(path);
+        check_readable(path)?;
+        let unreadable = |error: openusd::Error| MeshError::UsdUnreadable { at: at(), reason: one_line(&error) };
+        let absolute = std::path::absolute(path).map_err(|error| MeshError::Unreadable { at: at(), error })?;
+        let absolute = absolute.to_str().ok_or_else(|| MeshError::PathNotText { at: at() })?;
+        let stage = Stage::open(absolute).map_err(unreadable)?;
+        let mut paths = Vec::new();
+        stage.traverse(PrimPredicate::DEFAULT_PROXIES, |path| paths.push(path.clone())).map_err(unreadable)?;
+        if let Some(error) = stage.composition_errors().first() {
+            return Err(MeshError::UsdIncomplete { at: at(), reason: one_line(error) });
+        }
+        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        Ok(Self { stage, paths, file: path.display().to_string(), name })
     }
-    reader.check_found(&found)?;
-    let mut scene =
-        scene::join(found.meshes, &reader.file, &path.file_stem().unwrap_or_default().to_string_lossy())?;
-    scene.up = up_axis(&reader.stage);
-    scene.meters_per_unit = Some(meters_per_unit(&reader.stage));
-    scene.notes.extend(found.posed.map(|(first, count)| {
-        let others = if count == 1 { String::new() } else { format!(" and {} more", count - 1) };
-        format!("{first}{others}: skeletons and blend shapes are not applied; points are those of the rest pose")
-    }));
-    Ok(scene)
+
+    /// Reads and validates the meshes that are chosen, as one.
+    pub(super) fn read(&self, choice: &Choice) -> Result<SubdivMesh, MeshError> {
+        let reader = Reader { stage: &self.stage, file: &self.file, choice };
+        let mut states = HashMap::new();
+        let mut found = Found::default();
+        for path in &self.paths {
+            reader.visit(path, &mut states, &mut found)?;
+        }
+        reader.check_found(&found)?;
+        let mut scene = scene::join(found.meshes, &self.file, &self.name)?;
+        scene.up = up_axis(&self.stage);
+        scene.meters_per_unit = Some(meters_per_unit(&self.stage));
+        scene.notes.extend(found.posed.map(|(first, count)| {
+            let others = if count == 1 { String::new() } else { format!(" and {} more", count - 1) };
+            format!("{first}{others}: skeletons and blend shapes are not applied; points are those of the rest pose")
+        }));
+        Ok(scene)
+    }
 }
 
 /// A stage that is being read.
 struct Reader<'a> {
-    stage: Stage,
-    file: String,
+    stage: &'a Stage,
+    file: &'a str,
     choice: &'a Choice,
 }
 
@@ -95,7 +122,7 @@ impl Reader<'_> {
     /// Reads the prim's own part of the state, and the mesh if it is one that is shown. Parents come before children.
     fn visit(
         &self,
-        path: sdf::Path,
+        path: &sdf::Path,
         states: &mut HashMap<sdf::Path, State>,
         found: &mut Found,
     ) -> Result<(), MeshError> {
@@ -105,9 +132,9 @@ impl Reader<'_> {
             visible: true,
             purpose: "default".to_owned(),
         });
-        let source = self.source(&path);
-        let (prim, kind) = self.prim(&path, &source)?;
-        let node = Node { prim: &prim, source: &source };
+        let source = self.source(path);
+        let (prim, kind) = self.prim(path, &source)?;
+        let node = self.node(&prim, &source);
         // A prim without a type is not imageable: it hands on what it got. A scope has no transform.
         if !kind.is_empty() {
             state.visible &= node.token("visibility")?.as_deref() != Some("invisible");
@@ -127,7 +154,8 @@ impl Reader<'_> {
                         if prim::is_posed(&node)? {
                             found.posed.get_or_insert_with(|| (name.clone(), 0)).1 += 1;
                         }
-                        found.meshes.push((name.clone(), prim::read(&node, state.world)?));
+                        let (mesh, digest) = prim::read(&node, state.world)?;
+                        found.meshes.push(Placed { name: name.clone(), mesh, world: state.world, digest });
                     }
                 }
                 found.shown.push(name);
@@ -137,8 +165,12 @@ impl Reader<'_> {
             }
             _ => {}
         }
-        states.insert(path, state);
+        states.insert(path.clone(), state);
         Ok(())
+    }
+
+    fn node<'n>(&self, prim: &'n Prim, source: &'n str) -> Node<'n> {
+        Node { prim, source, time: self.choice.time }
     }
 
     /// How messages name a prim.
@@ -159,7 +191,7 @@ impl Reader<'_> {
 
     /// Refuses a stage without meshes, and a choice that chooses none.
     fn check_found(&self, found: &Found) -> Result<(), MeshError> {
-        let at = || Place::with(&self.file, Spot::Whole);
+        let at = || Place::with(self.file, Spot::Whole);
         if found.shown.is_empty() {
             return Err(MeshError::NoMeshPrims { at: at() });
         }
@@ -175,7 +207,7 @@ impl Reader<'_> {
             Some((path, world)) if found.meshes.is_empty() => {
                 let source = self.source(path);
                 let (prim, _) = self.prim(path, &source)?;
-                prim::read(&Node { prim: &prim, source: &source }, *world).map(drop)
+                prim::read(&self.node(&prim, &source), *world).map(drop)
             }
             _ => Ok(()),
         }
@@ -207,7 +239,7 @@ fn some_of(names: &[String]) -> String {
 fn check_readable(path: &Path) -> Result<(), MeshError> {
     let at = || Place::file(path);
     let mut first = [0];
-    match File::open(path).and_then(|mut file| file.read(&mut first)) {
+    match fs::File::open(path).and_then(|mut file| file.read(&mut first)) {
         Ok(0) => Err(MeshError::EmptyFile { at: at() }),
         Ok(_) => Ok(()),
         Err(error) if error.kind() == ErrorKind::NotFound => Err(MeshError::NotFound { at: at() }),

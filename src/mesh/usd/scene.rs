@@ -2,6 +2,9 @@
 
 use std::collections::HashMap;
 
+use glam::DMat4;
+
+use super::instances::{Extent, Originals};
 use crate::mesh::error::{Place, Spot};
 use crate::mesh::validate::check_counts;
 use crate::mesh::{Boundary, Corner, Crease, MeshError, Part, SubdivMesh};
@@ -16,29 +19,47 @@ const INFINITE: f32 = 10.0;
 ///
 /// # Errors
 /// A mesh whose boundary is not interpolated beside one whose is, and more points or faces than OpenSubdiv counts.
-pub(super) fn join(meshes: Vec<(String, SubdivMesh)>, file: &str, name: &str) -> Result<SubdivMesh, MeshError> {
+pub(super) fn join(meshes: Vec<Placed>, file: &str, name: &str) -> Result<SubdivMesh, MeshError> {
     let mut scene = SubdivMesh { name: name.to_owned(), ..SubdivMesh::default() };
     scene.boundary = match &meshes[..] {
-        [(_, one)] => one.boundary,
+        [one] => one.mesh.boundary,
         _ => common_rule(&meshes)?,
     };
-    for (name, mut mesh) in meshes {
+    let mut originals = Originals::default();
+    for Placed { name, mut mesh, world, digest } in meshes {
+        let before = Extent::of(&scene);
         if mesh.boundary == Boundary::EdgeAndCorner && scene.boundary == Boundary::EdgeOnly {
             sharpen_lone_vertices(&mut mesh);
         }
-        let before = [scene.face_count(), scene.points.len()].map(|count| count as u32);
         append(&mut scene, mesh);
         // Indices fit as long as their number does.
         check_counts(&scene, &Place::with(file, Spot::Whole))?;
+        let repeats = originals.find(&scene, &before, digest, world);
         let [faces, points] = [scene.face_count(), scene.points.len()].map(|count| count as u32);
-        scene.parts.push(Part { name, faces: before[0]..faces, points: before[1]..points });
+        scene.parts.push(Part {
+            name,
+            faces: before.faces as u32..faces,
+            points: before.points as u32..points,
+            repeats,
+        });
     }
     Ok(scene)
 }
 
-fn common_rule(meshes: &[(String, SubdivMesh)]) -> Result<Boundary, MeshError> {
+/// A mesh of the stage, with its points in world space.
+pub(super) struct Placed {
+    /// Path of its prim.
+    pub name: String,
+    pub mesh: SubdivMesh,
+    /// What brought its points there.
+    pub world: DMat4,
+    /// Digest of all that it is before that ([`digest`](super::instances::digest)).
+    pub digest: u64,
+}
+
+fn common_rule(meshes: &[Placed]) -> Result<Boundary, MeshError> {
     let mut rules: Vec<(&SubdivMesh, Boundary)> = Vec::new();
-    for (_, mesh) in meshes {
+    for Placed { mesh, .. } in meshes {
         if rules.iter().all(|&(_, rule)| rule != mesh.boundary) && has_boundary(mesh) {
             rules.push((mesh, mesh.boundary));
         }

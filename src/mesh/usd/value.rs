@@ -11,6 +11,8 @@ use crate::mesh::error::{Place, Spot, quote};
 pub(super) struct Node<'a> {
     pub(super) prim: &'a Prim,
     pub(super) source: &'a str,
+    /// When; `None` is the default time.
+    pub(super) time: Option<f64>,
 }
 
 impl Node<'_> {
@@ -18,12 +20,15 @@ impl Node<'_> {
         Place::with(self.source, Spot::Whole)
     }
 
-    /// The default value of an attribute, and where there is only a first time sample, that.
+    /// The value of an attribute at the time; at the default time, where there are only time samples, the first of them.
     pub(super) fn value(&self, name: &str) -> Result<Option<Value>, MeshError> {
         let attribute = self.prim.attribute(name);
-        let value = match attribute.get::<Value>() {
-            Ok(None) => attribute.get_at::<Value>(TimeCode::EARLIEST),
-            value => value,
+        let value = match self.time {
+            Some(time) => attribute.get_at::<Value>(TimeCode::new(time)),
+            None => match attribute.get::<Value>() {
+                Ok(None) => attribute.get_at::<Value>(TimeCode::EARLIEST),
+                value => value,
+            },
         };
         let value = value.map_err(|error| self.unreadable(name, &error))?;
         Ok(value.filter(|value| !matches!(value, Value::None | Value::ValueBlock)))
