@@ -194,7 +194,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
         let made_by = made_by(args, MeshAt { digest, time }, &rig, &name, &view);
         Shot { path: &paths[index], view, made_by }
     };
-    let missing = missing(args, &source, &times, &body.mesh, paths.len(), &shot)?;
+    let missing = missing(args, &source, &times, &body.mesh, paths.len(), shot)?;
     if missing.is_empty() {
         save_rig()?;
         return account.write(args.json.as_ref(), None, samples);
@@ -319,7 +319,7 @@ impl Body {
 
 /// What pictures of one mesh are drawn from.
 enum Drawn<'a> {
-    One(Tables),
+    One(Box<Tables>),
     /// `--compare`.
     Both(Box<Pair<'a>>),
 }
@@ -335,7 +335,7 @@ impl<'a> Drawn<'a> {
         let tables = args.patches.upload(&body.mesh, body.surface(), layout, gpu, account)?;
         Ok(match args.patches.compare {
             true => Self::Both(Box::new(Pair::new(args, &body.mesh, body.surface(), gpu, tables, account)?)),
-            false => Self::One(tables),
+            false => Self::One(Box::new(tables)),
         })
     }
 
