@@ -26,7 +26,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use crate::gpu::GpuError;
-use crate::mesh::{self, MeshError, SubdivMesh};
+use crate::mesh::{self, MeshError, Scheme, SubdivMesh};
 use crate::output::OutputError;
 
 /// Why a command stopped, and with which exit code.
@@ -121,6 +121,18 @@ fn load(path: Option<&Path>) -> Result<SubdivMesh, MeshError> {
     match path {
         Some(path) => mesh::read(path),
         None => Ok(mesh::sample()),
+    }
+}
+
+/// Reads a mesh for a command that does not know triangles under Loop's rules.
+fn load_quads(path: Option<&Path>, command: &str) -> Result<SubdivMesh, Failure> {
+    let mesh = load(path)?;
+    match mesh.scheme {
+        Scheme::Loop => Err(Failure::of(
+            &mesh,
+            format!("the scheme loop is not supported by {command}; eval, info and verify do, or use catmullClark"),
+        )),
+        _ => Ok(mesh),
     }
 }
 

@@ -8,7 +8,7 @@ use super::args::size;
 use super::field::FieldArgs;
 use super::rig::{RigArgs, is_orthographic, positive};
 use super::settings::{CommandLine, mesh_digest, method_name};
-use super::{Failure, load, progress, write_out};
+use super::{Failure, load_quads, progress, write_out};
 use crate::curves::{self, Curve};
 use crate::field::{Camera, Projection, Scout};
 use crate::output::{Lines, LinesFormat, MM_PER_PIXEL, check_writable, write_whole};
@@ -151,7 +151,7 @@ pub(super) fn run(args: &LinesArgs) -> Result<(), Failure> {
     args.output.iter().try_for_each(|path| files.write(path, "-o", "the curves"))?;
     args.rig.check_apart(&mut files)?;
     let bar = progress("tracing".to_owned());
-    let mesh = account.time("read", || load(args.mesh.as_deref()))?;
+    let mesh = account.time("read", || load_quads(args.mesh.as_deref(), "lines"))?;
     let surface =
         account.time("patches and classes", || LimitSurface::new(&mesh)).map_err(|e| Failure::of(&mesh, e))?;
     let scout = account.time("fit", || Scout::new(&surface)).ok_or_else(|| {

@@ -9,7 +9,7 @@ use super::args::size;
 use super::field::{ColourArgs, FieldArgs, PatternArgs};
 use super::rig::RigArgs;
 use super::settings::{CommandLine, mesh_digest};
-use super::{Failure, load, progress, write_out};
+use super::{Failure, load_quads, progress, write_out};
 use crate::field::{Field, Pattern, Scout};
 use crate::gpu::View;
 use crate::mesh::SubdivMesh;
@@ -164,7 +164,7 @@ pub(super) fn run(args: &QualityArgs) -> Result<(), Failure> {
     args.check_files(&rig)?;
     let pattern = rig.pattern.read(&rig.method()).map_err(Failure::Bad)?;
     let bar = progress("measuring".to_owned());
-    let mesh = account.time("read", || load(args.mesh.as_deref()))?;
+    let mesh = account.time("read", || load_quads(args.mesh.as_deref(), "quality"))?;
     let surface =
         account.time("patches and classes", || LimitSurface::new(&mesh)).map_err(|e| Failure::of(&mesh, e))?;
     let scout = account.time("fit", || Scout::new(&surface)).ok_or_else(|| {

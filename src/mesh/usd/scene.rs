@@ -15,13 +15,18 @@ const INFINITE: f32 = 10.0;
 /// one of `EdgeOnly`; meshes without a boundary go with either.
 ///
 /// # Errors
-/// A mesh whose boundary is not interpolated beside one whose is, and more points or faces than OpenSubdiv counts.
+/// Meshes of two schemes, a mesh whose boundary is not interpolated beside one whose is, and more points or faces than OpenSubdiv counts.
 pub(super) fn join(meshes: Vec<SubdivMesh>, file: &str, name: &str) -> Result<SubdivMesh, MeshError> {
     let mut scene = SubdivMesh { name: name.to_owned(), ..SubdivMesh::default() };
     scene.boundary = match &meshes[..] {
         [one] => one.boundary,
         _ => common_rule(&meshes)?,
     };
+    scene.scheme = meshes.first().map_or_else(Default::default, |mesh| mesh.scheme);
+    if let Some(mesh) = meshes.iter().find(|mesh| mesh.scheme != scene.scheme) {
+        let (first, found) = (scene.scheme.name(), mesh.scheme.name());
+        return Err(MeshError::SchemeMixed { at: Place::with(&mesh.name, Spot::Whole), first, found });
+    }
     for mut mesh in meshes {
         if mesh.boundary == Boundary::EdgeAndCorner && scene.boundary == Boundary::EdgeOnly {
             sharpen_lone_vertices(&mut mesh);
