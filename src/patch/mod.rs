@@ -124,7 +124,7 @@ impl Patch {
     /// Patch-local parameters of a point of the ptex face that lies in this patch.
     pub fn to_local(&self, [u, v]: [f64; 2]) -> [f64; 2] {
         if self.shape != Shape::Square {
-            return self.to_local_triangle([u, v]);
+            return self.in_triangle([u, v]);
         }
         let scale = self.scale();
         let [u, v] = [u * scale[0] - f64::from(self.origin[0]), v * scale[1] - f64::from(self.origin[1])];
@@ -145,7 +145,7 @@ impl Patch {
     /// Ptex parameters of a patch-local point.
     pub fn to_ptex(&self, [s, t]: [f64; 2]) -> [f64; 2] {
         if self.shape != Shape::Square {
-            return self.to_ptex_triangle([s, t]);
+            return self.of_triangle([s, t]);
         }
         let [u, v] = match self.rotation {
             0 => [s, t],

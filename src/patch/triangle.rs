@@ -32,13 +32,13 @@ pub(super) fn quarter([u, v]: [f64; 2]) -> (usize, [f64; 2]) {
 }
 
 impl Patch {
-    pub(super) fn to_local_triangle(&self, uv: [f64; 2]) -> [f64; 2] {
+    pub(super) fn in_triangle(&self, uv: [f64; 2]) -> [f64; 2] {
         let place: [f64; 2] = std::array::from_fn(|k| uv[k] * self.scale()[k] - f64::from(self.origin[k]));
         let place = if self.shape == Shape::TurnedTriangle { place.map(|x| 1.0 - x) } else { place };
         inside(turn_in(self.rotation, place))
     }
 
-    pub(super) fn to_ptex_triangle(&self, uv: [f64; 2]) -> [f64; 2] {
+    pub(super) fn of_triangle(&self, uv: [f64; 2]) -> [f64; 2] {
         // Turning in by the rest of a whole turn turns out.
         let place = turn_in((3 - self.rotation) % 3, uv);
         let place = if self.shape == Shape::TurnedTriangle { place.map(|x| 1.0 - x) } else { place };
