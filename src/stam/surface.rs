@@ -122,6 +122,16 @@ impl LimitSurface {
         self.patches.support(patch)
     }
 
+    /// Whether patches are triangles, under Loop's scheme.
+    pub fn has_triangles(&self) -> bool {
+        self.patches.are_triangles()
+    }
+
+    /// A refined point.
+    pub(super) fn refined_point(&self, vertex: u32) -> DVec3 {
+        self.points[vertex as usize]
+    }
+
     /// The same patches over other refined points, those of all levels.
     pub(crate) fn with_refined(&self, points: Vec<DVec3>) -> Self {
         Self { points: Arc::new(points), ..self.clone() }

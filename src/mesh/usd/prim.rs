@@ -5,7 +5,7 @@ use glam::{DMat4, DVec3};
 use super::instances;
 use super::value::Node;
 use crate::mesh::validate::{Source, check};
-use crate::mesh::{Boundary, Corner, Crease, MeshError, SubdivMesh};
+use crate::mesh::{Boundary, Corner, Crease, MeshError, Scheme, SubdivMesh};
 
 /// Whether the prim has no faces at all.
 pub(super) fn is_empty(node: &Node<'_>) -> Result<bool, MeshError> {
@@ -20,7 +20,6 @@ pub(super) fn is_posed(node: &Node<'_>) -> Result<bool, MeshError> {
 
 /// Reads and validates the mesh, with its points where `world` puts them; the other result is its digest before that.
 pub(super) fn read(node: &Node<'_>, world: DMat4) -> Result<(SubdivMesh, u64), MeshError> {
-    scheme(node)?;
     let points = node.required("points", node.points("points")?)?;
     let face_sizes = node.required("faceVertexCounts", node.indices("faceVertexCounts")?)?;
     let face_vertices = node.required("faceVertexIndices", node.indices("faceVertexIndices")?)?;
@@ -34,6 +33,7 @@ pub(super) fn read(node: &Node<'_>, world: DMat4) -> Result<(SubdivMesh, u64), M
         creases: creases(node)?,
         corners: corners(node)?,
         holes: node.indices("holeIndices")?.unwrap_or_default(),
+        scheme: scheme(node)?,
         boundary: boundary(node)?,
         ..SubdivMesh::default()
     };
@@ -47,11 +47,9 @@ pub(super) fn read(node: &Node<'_>, world: DMat4) -> Result<(SubdivMesh, u64), M
     Ok((mesh, digest))
 }
 
-fn scheme(node: &Node<'_>) -> Result<(), MeshError> {
-    match node.token("subdivisionScheme")?.as_deref() {
-        None | Some("catmullClark") => Ok(()),
-        Some(scheme) => Err(MeshError::SchemeUnsupported { at: node.place(), scheme: scheme.to_owned() }),
-    }
+fn scheme(node: &Node<'_>) -> Result<Scheme, MeshError> {
+    let Some(name) = node.token("subdivisionScheme")? else { return Ok(Scheme::CatmullClark) };
+    Scheme::of_name(&name).ok_or_else(|| MeshError::SchemeUnknown { at: node.place(), scheme: name })
 }
 
 fn refused(node: &Node<'_>, name: &'static str, value: &str, expected: &'static str) -> MeshError {
@@ -81,7 +79,7 @@ fn triangle_rule(node: &Node<'_>, mesh: &SubdivMesh) -> Result<(), MeshError> {
     let name = "triangleSubdivisionRule";
     match node.token(name)?.as_deref() {
         None | Some("catmullClark") => Ok(()),
-        Some("smooth") if !mesh.face_sizes.contains(&3) => Ok(()),
+        Some("smooth") if mesh.scheme != Scheme::CatmullClark || !mesh.face_sizes.contains(&3) => Ok(()),
         Some(other) => Err(refused(node, name, other, "catmullClark, or smooth for meshes without triangles")),
     }
 }
