@@ -10,9 +10,9 @@ impl SubdivMesh {
         self.face_sizes.len()
     }
 
-    /// Number of ptex faces, holes included: a quad is one, an n-gon n.
+    /// Number of ptex faces, holes included: a quad is one, an n-gon n; under Loop's scheme a triangle is one.
     pub fn ptex_count(&self) -> usize {
-        self.face_sizes.iter().map(|&size| if size == 4 { 1 } else { size as usize }).sum()
+        self.face_sizes.iter().map(|&size| self.ptex_faces_of(size as usize)).sum()
     }
 
     /// Number of control points, those that no face uses included.

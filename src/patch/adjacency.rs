@@ -75,6 +75,8 @@ enum PtexEdgeKind {
     Open,
     /// Between two quadrants of an n-gon.
     Spoke,
+    /// Between two quadrants of a flat n-gon.
+    SharpSpoke,
 }
 
 /// The four edges of every ptex face, and the level at which the ptex face is a quad.
@@ -90,8 +92,9 @@ pub(super) struct PtexEdges {
 }
 
 impl PtexEdges {
-    /// Those of a piece's own faces. Lines are counted in the piece: its edges, then its spokes.
-    pub fn new(control: &Level, piece: &Piece<'_>) -> Self {
+    /// Those of a piece's own faces. Lines are counted in the piece: its edges, then its spokes. `creased`: the surface has a
+    /// crease along every line.
+    pub fn new(control: &Level, piece: &Piece<'_>, creased: bool) -> Self {
         let mut out = Self { lines: control.edge_sharpness.len() as u32, ..Self::default() };
         for face in piece.core.clone() {
             let corners = control.corners(face);
@@ -101,7 +104,7 @@ impl PtexEdges {
             for [a, b, edge] in control.edges_of_face(face) {
                 let (from, to) = if a < b { (0, 2) } else { (2, 0) };
                 let faces = control.edge_faces[edge];
-                let kind = match control.edge_sharpness[edge] >= INFINITE_SHARPNESS {
+                let kind = match creased || control.edge_sharpness[edge] >= INFINITE_SHARPNESS {
                     _ if faces[0] < 0 => PtexEdgeKind::Open,
                     true => PtexEdgeKind::Sharp,
                     false => PtexEdgeKind::Smooth,
@@ -128,7 +131,7 @@ impl PtexEdges {
                 line: spokes + (k % size) as u32,
                 from,
                 to,
-                kind: PtexEdgeKind::Spoke,
+                kind: if creased { PtexEdgeKind::SharpSpoke } else { PtexEdgeKind::Spoke },
             };
             for k in 0..size {
                 let before = (k + size - 1) % size;
@@ -283,8 +286,10 @@ fn side(patches: &Patches, patch: &Patch, index: u32, edge: u8) -> Option<((u32,
     };
     let [a, b] = [scaled(start), scaled(start + length)];
     // Two quadrants of an n-gon lie on the same side of a control edge.
-    let side = if kind == PtexEdgeKind::Spoke { patch.ptex } else { patches.ptex_edges.faces[ptex] };
-    Some(((line, 0), part(a > b, a.min(b), a.max(b), side, kind == PtexEdgeKind::Sharp)))
+    let is_spoke = matches!(kind, PtexEdgeKind::Spoke | PtexEdgeKind::SharpSpoke);
+    let is_sharp = matches!(kind, PtexEdgeKind::Sharp | PtexEdgeKind::SharpSpoke);
+    let side = if is_spoke { patch.ptex } else { patches.ptex_edges.faces[ptex] };
+    Some(((line, 0), part(a > b, a.min(b), a.max(b), side, is_sharp)))
 }
 
 /// Pieces where an interval of one side overlaps one of the other, both ways.

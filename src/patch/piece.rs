@@ -5,7 +5,8 @@
 //! become what they are in the whole mesh. Memory for topology is that of a few pieces, whatever the size of the mesh,
 //! and pieces are refined in parallel.
 
-use crate::mesh::{Corner, Crease, SubdivMesh};
+use crate::mesh::{Corner, Crease, Scheme, SubdivMesh};
+use crate::osd::Level;
 use std::borrow::Cow;
 use std::ops::Range;
 
@@ -36,6 +37,16 @@ impl<'a> Piece<'a> {
     pub fn whole(mesh: &'a SubdivMesh) -> Self {
         let core = 0..mesh.face_sizes.len();
         Self { mesh: Cow::Borrowed(mesh), vertices: None, core, first_face: 0, first_ptex: 0 }
+    }
+
+    /// The faces of the ring that share an edge with one of the piece's own.
+    pub fn beside(&self, control: &Level) -> Vec<usize> {
+        let is_beside = |face: &usize| {
+            let edges = control.edges_of_face(*face).map(|[.., edge]| control.edge_faces[edge]);
+            edges.flatten().filter_map(|face| usize::try_from(face).ok()).any(|face| self.core.contains(&face))
+        };
+        let ring = (0..control.face_count()).filter(|face| !self.core.contains(face));
+        ring.filter(is_beside).collect()
     }
 }
 
@@ -72,7 +83,8 @@ impl<'a> Division<'a> {
         };
         let total = mesh.face_vertices.len() as u32;
         let offsets = running(&mut mesh.face_sizes.iter().copied().chain([total]));
-        let ptex = running(&mut mesh.face_sizes.iter().map(|&size| if size == 4 { 1 } else { size }));
+        let whole = if mesh.scheme == Scheme::Loop { 3 } else { 4 };
+        let ptex = running(&mut mesh.face_sizes.iter().map(|&size| if size == whole { 1 } else { size }));
         let faces_at = ByVertex::new(mesh.points.len(), || {
             mesh.faces().flat_map(|(face, vertices)| vertices.iter().map(move |&v| (v, face as u32)))
         });
@@ -145,6 +157,7 @@ impl<'a> Division<'a> {
         let mut mesh = SubdivMesh {
             name: self.mesh.name.clone(),
             points: vertices.iter().map(|&vertex| self.mesh.points[vertex as usize]).collect(),
+            scheme: self.mesh.scheme,
             boundary: self.mesh.boundary,
             creasing: self.mesh.creasing,
             ..SubdivMesh::default()

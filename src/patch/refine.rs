@@ -1,8 +1,8 @@
 //! From a control mesh to its patches, a piece at a time.
 
 use super::piece::{Division, Piece};
-use super::{Node, PatchError, Patches, RingClass, SupportKind, tree};
-use crate::mesh::SubdivMesh;
+use super::{Node, PatchError, Patches, RingClass, SupportKind, flat, loop_tree, tree};
+use crate::mesh::{Scheme, SubdivMesh};
 use crate::osd::{self, INFINITE_SHARPNESS, MAX_ISOLATION, Refiner};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -154,16 +154,32 @@ fn refine<R: Send>(
 ) -> Result<(Patches, Vec<R>), PatchError> {
     let isolation = isolation(mesh);
     let one = |piece: Piece<'_>| {
-        // Along a single crease OpenSubdiv need not refine: strips have a closed form. Should it call a crease single
-        // that we do not, everything is refined.
         let refine = |single| Refiner::adaptive(&piece.mesh, isolation, RINGS_STAND_ALONE, single);
-        let mut refiner = refine(true)?;
-        let patches = match tree::build(&refiner, &piece) {
-            Err(PatchError::NotRefined { .. }) => {
-                refiner = refine(false)?;
-                tree::build(&refiner, &piece)?
+        let (refiner, patches) = match mesh.scheme {
+            scheme if scheme.is_linear() => {
+                // One level, for the middles of faces that are no quads.
+                let refiner = Refiner::adaptive(&piece.mesh, 1, 1, false)?;
+                let patches = flat::build(&refiner, &piece)?;
+                (refiner, patches)
             }
-            patches => patches?,
+            Scheme::Loop => {
+                let refiner = refine(false)?;
+                let patches = loop_tree::build(&refiner, &piece)?;
+                (refiner, patches)
+            }
+            _ => {
+                // Along a single crease OpenSubdiv need not refine: strips have a closed form. Should it call a crease single
+                // that we do not, everything is refined.
+                let mut refiner = refine(true)?;
+                let patches = match tree::build(&refiner, &piece) {
+                    Err(PatchError::NotRefined { .. }) => {
+                        refiner = refine(false)?;
+                        tree::build(&refiner, &piece)?
+                    }
+                    patches => patches?,
+                };
+                (refiner, patches)
+            }
         };
         let points = refiner.vertex_counts().iter().sum::<usize>();
         Ok((patches, points, finish(Refined { refiner, vertices: piece.vertices })?))
@@ -176,7 +192,8 @@ fn refine<R: Send>(
         .into_par_iter()
         .map_init(Vec::new, |local, index| one(division.piece(index, local)))
         .collect();
-    let (mut out, mut kept, mut vertices) = (Patches::default(), Vec::new(), 0usize);
+    let (mut kept, mut vertices) = (Vec::new(), 0usize);
+    let mut out = Patches { triangles: mesh.scheme == Scheme::Loop, ..Patches::default() };
     let (mut classes, mut lines) = (HashMap::new(), HashMap::new());
     for piece in pieces {
         let (patches, points, own) = piece?;
@@ -221,11 +238,11 @@ mod tests {
             let points = points.concat();
             assert_eq!(pieces.all().len(), whole.all().len(), "{}", mesh.name);
             assert_eq!(pieces.classes(), whole.classes(), "{}", mesh.name);
-            let neighbours = [Adjacency::new(&pieces), Adjacency::new(&whole)];
+            let neighbours = [&pieces, &whole].map(Adjacency::new);
             for patch in 0..whole.all().len() {
                 let [a, b] = [described(&pieces, &points, patch), described(&whole, &whole_points, patch)];
                 assert_eq!(a, b, "{}", mesh.name);
-                for edge in 0..4 {
+                for edge in 0..if whole.are_triangles() { 0 } else { 4 } {
                     let [a, b] = neighbours.each_ref().map(|neighbours| neighbours.across(patch, edge));
                     assert_eq!(a, b, "{}: patch {patch}, edge {edge}", mesh.name);
                 }

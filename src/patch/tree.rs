@@ -4,7 +4,9 @@ use super::adjacency::PtexEdges;
 use super::fan::Fan;
 use super::piece::Piece;
 use super::strips;
-use super::{MAX_VALENCE, Node, Patch, PatchError, PatchKind, Patches, RingClass, Strips, Support, SupportKind, Tip};
+use super::{
+    MAX_VALENCE, Node, Patch, PatchError, PatchKind, Patches, RingClass, Shape, Strips, Support, SupportKind, Tip,
+};
 use crate::osd::{INFINITE_SHARPNESS, Level, Refiner, Rule};
 use std::collections::HashMap;
 
@@ -72,7 +74,7 @@ pub(super) fn build(refiner: &Refiner, piece: &Piece<'_>) -> Result<Patches, Pat
     }
     walk.visit_beside(piece)?;
     walk.mark_transitions();
-    walk.out.ptex_edges = PtexEdges::new(&walk.levels[0], piece);
+    walk.out.ptex_edges = PtexEdges::new(&walk.levels[0], piece, false);
     Ok(walk.out)
 }
 
@@ -101,23 +103,12 @@ impl Walk {
         Ok(())
     }
 
-    /// Visits the faces of the ring across an edge from the piece's own: whether they are split is all that is wanted of them.
+    /// Visits the faces across an edge from the piece's own: whether they are split is all that is wanted of them.
     fn visit_beside(&mut self, piece: &Piece<'_>) -> Result<(), PatchError> {
-        let topology = &self.levels[0];
-        let beside = |face: usize| {
-            let edges = topology.edges_of_face(face).map(|[.., edge]| topology.edge_faces[edge]);
-            edges.flatten().filter_map(|face| usize::try_from(face).ok()).any(|face| piece.core.contains(&face))
-        };
-        let ring = (0..topology.face_count()).filter(|face| !piece.core.contains(face));
-        let ring: Vec<usize> = ring.filter(|&face| beside(face)).collect();
-        if ring.is_empty() {
-            return Ok(());
-        }
-        let own = (std::mem::take(&mut self.out), self.class_indices.clone(), self.row_indices.clone());
-        let places = std::mem::take(&mut self.places);
-        ring.into_iter().try_for_each(|face| self.root(face, &mut 0))?;
-        (self.out, self.class_indices, self.row_indices) = own;
-        self.places = places;
+        let own = (std::mem::take(&mut self.out), std::mem::take(&mut self.places));
+        // Numbers of classes and rows that come up here are not used: nothing follows.
+        piece.beside(&self.levels[0]).into_iter().try_for_each(|face| self.root(face, &mut 0))?;
+        (self.out, self.places) = own;
         Ok(())
     }
 
@@ -182,6 +173,7 @@ impl Walk {
         self.out.supports.push(support);
         Some(Patch {
             ptex: cell.ptex,
+            shape: Shape::Square,
             depth: [cell.depth; 2],
             quadrant: level > usize::from(cell.depth),
             origin: cell.origin,
@@ -241,6 +233,7 @@ impl Walk {
             self.out.supports.push(Support { kind: SupportKind::Strip(first_rows + u32::from(strip)), ..support });
             self.out.patches.push(Patch {
                 ptex: cell.ptex,
+                shape: Shape::Square,
                 depth,
                 quadrant: level > usize::from(cell.depth),
                 origin,
@@ -343,7 +336,7 @@ fn place(grid: &mut [u32; 16], fan: &Fan, corner: usize, global: impl Fn(usize) 
     }
 }
 
-fn kind_of(fan: &Fan) -> Option<PatchKind> {
+pub(super) fn kind_of(fan: &Fan) -> Option<PatchKind> {
     match (fan.rule?, fan.closed) {
         (Rule::Smooth, true) => Some(PatchKind::Smooth),
         (Rule::Dart, true) => Some(PatchKind::Dart),
@@ -354,7 +347,7 @@ fn kind_of(fan: &Fan) -> Option<PatchKind> {
 }
 
 impl RingClass {
-    fn new(fan: &Fan) -> Self {
+    pub(super) fn new(fan: &Fan) -> Self {
         let tip = match fan.rule {
             Some(Rule::Crease) => Tip::Crease,
             Some(Rule::Corner) => Tip::Corner,
@@ -362,6 +355,7 @@ impl RingClass {
         };
         let dart = fan.closed.then(|| fan.sharpness.iter().position(|&s| s >= INFINITE_SHARPNESS)).flatten();
         Self {
+            triangles: false,
             faces: fan.faces() as u16,
             closed: fan.closed,
             index: fan.index as u16,

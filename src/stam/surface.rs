@@ -2,7 +2,7 @@
 
 use super::class::{ClassTable, WINDOW_POINTS};
 use crate::mesh::SubdivMesh;
-use crate::patch::{Adjacency, PHANTOM, Patch, PatchError, PatchKind, Patches, RingClass, slot};
+use crate::patch::{Adjacency, PHANTOM, Patch, PatchError, PatchKind, Patches, Refinement, RingClass, slot};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -43,13 +43,24 @@ impl LimitSurface {
     /// The mesh is not valid, OpenSubdiv refuses it, or a face stays without a closed form.
     pub fn new(mesh: &SubdivMesh) -> Result<Self, PatchError> {
         let (patches, points) = Patches::with_points(mesh)?;
+        Ok(Self::of(patches, points, mesh))
+    }
+
+    /// As [`new`](Self::new), with what makes refined points of control points.
+    pub(super) fn with_refinement(mesh: &SubdivMesh) -> Result<(Self, Refinement), PatchError> {
+        let (patches, mut refinement) = Patches::new(mesh)?;
+        let points = refinement.interpolate(&mesh.points)?;
+        Ok((Self::of(patches, points, mesh), refinement))
+    }
+
+    fn of(patches: Patches, points: Vec<DVec3>, mesh: &SubdivMesh) -> Self {
         let tables = patches.classes().par_iter().map(|&class| ClassTable::new(class)).collect();
-        Ok(Self {
+        Self {
             patches: Arc::new(patches),
             tables: Arc::new(tables),
             points: Arc::new(points),
             diagonal: mesh.diagonal(),
-        })
+        }
     }
 
     /// All patches, in ptex order.
@@ -113,9 +124,9 @@ impl LimitSurface {
 
     /// Some control point of a patch, phantom points left out.
     pub(crate) fn control_point(&self, patch: usize) -> DVec3 {
-        // Inside the net of a regular patch, and the vertex itself of an irregular one: never a phantom point.
-        let inside = if self.class(patch).is_some() { 0 } else { slot(0, 0) };
-        self.points[self.patches.support(patch)[inside] as usize]
+        let mut support = self.patches.support(patch).iter();
+        let vertex = support.find(|&&vertex| vertex != PHANTOM).expect("corners are control points");
+        self.points[*vertex as usize]
     }
 
     /// Refined vertices that control a patch, [`PHANTOM`] where there is none.
@@ -123,9 +134,24 @@ impl LimitSurface {
         self.patches.support(patch)
     }
 
+    /// Whether patches are triangles, under Loop's scheme.
+    pub fn has_triangles(&self) -> bool {
+        self.patches.are_triangles()
+    }
+
+    /// A refined point.
+    pub(super) fn refined_point(&self, vertex: u32) -> DVec3 {
+        self.points[vertex as usize]
+    }
+
     /// The same patches over other refined points, those of all levels.
     pub(crate) fn with_refined(&self, points: Vec<DVec3>) -> Self {
         Self { points: Arc::new(points), ..self.clone() }
+    }
+
+    /// As [`with_refined`](Self::with_refined), of a mesh with another diagonal.
+    pub(super) fn moved(&self, points: Vec<DVec3>, diagonal: f64) -> Self {
+        Self { diagonal, ..self.with_refined(points) }
     }
 
     /// A surface with an error: point `point` of the support of a patch is moved, for this patch alone (strips along a

@@ -6,8 +6,10 @@ mod inputs;
 mod many;
 
 use super::args::VerifyArgs;
+use super::rows::check_place;
 use super::{Failure, write_out};
 use crate::gpu::Gpu;
+use crate::mesh::Scheme;
 use crate::osd::Location;
 use crate::output::check_writable;
 use crate::page::{Pictures, page};
@@ -24,7 +26,7 @@ pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
         check_writable(path)?;
     }
     let baseline = args.baseline.as_deref().map(|path| read_baseline(path, args.size)).transpose()?;
-    let inputs = inputs::find(&args.meshes)?;
+    let inputs = inputs::find(&args.meshes, &args.scene)?;
     if args.conformance.asked() {
         return conformance::run(args, &inputs);
     }
@@ -103,6 +105,8 @@ fn one(args: &VerifyArgs, inputs: &[Input], (face, u, v): Location) -> Result<()
         return Err(Failure::Bad(format!("--only takes one mesh, not {}; name it", inputs.len())));
     };
     let mesh = input.mesh().map_err(Failure::Bad)?;
+    check_place((face, u, v), mesh.ptex_count(), mesh.scheme == Scheme::Loop)
+        .map_err(|what| Failure::of_input(input, format!("--only: {what}")))?;
     // Without an adapter the shader is left out: what f64 and OpenSubdiv say does not need it.
     let gpu = Gpu::new().ok();
     let shown = only(&mesh, gpu.as_ref(), Sample { face, u, v }, args.plant)
@@ -132,7 +136,7 @@ impl Show<'_> {
     /// The command that shows a single sample, up to the mesh.
     fn flags(&self) -> String {
         let plant = self.args.plant.map(|plant| format!(" --plant {plant}")).unwrap_or_default();
-        format!("catoptric verify{plant}")
+        format!("catoptric verify{}{plant}", self.args.scene.flags())
     }
 
     /// All rows of a single mesh; of many a line each, and the rows that failed.

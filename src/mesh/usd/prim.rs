@@ -2,13 +2,24 @@
 
 use glam::{DMat4, DVec3};
 
+use super::instances;
 use super::value::Node;
 use crate::mesh::validate::{Source, check};
-use crate::mesh::{Boundary, Corner, Crease, MeshError, SubdivMesh};
+use crate::mesh::{Boundary, Corner, Crease, MeshError, Scheme, SubdivMesh};
 
-/// Reads and validates the mesh, with its points where `world` puts them.
-pub(super) fn read(node: &Node<'_>, world: DMat4) -> Result<SubdivMesh, MeshError> {
-    scheme(node)?;
+/// Whether the prim has no faces at all.
+pub(super) fn is_empty(node: &Node<'_>) -> Result<bool, MeshError> {
+    let none = |name| node.indices(name).map(|values| values.is_none_or(|values| values.is_empty()));
+    Ok(none("faceVertexCounts")? && none("faceVertexIndices")?)
+}
+
+/// Whether a skeleton or blend shapes would move the points (`UsdSkelBindingAPI`).
+pub(super) fn is_posed(node: &Node<'_>) -> Result<bool, MeshError> {
+    Ok(node.has_value("primvars:skel:jointIndices")? || node.has_value("skel:blendShapes")?)
+}
+
+/// Reads and validates the mesh, with its points where `world` puts them; the other result is its digest before that.
+pub(super) fn read(node: &Node<'_>, world: DMat4) -> Result<(SubdivMesh, u64), MeshError> {
     let points = node.required("points", node.points("points")?)?;
     let face_sizes = node.required("faceVertexCounts", node.indices("faceVertexCounts")?)?;
     let face_vertices = node.required("faceVertexIndices", node.indices("faceVertexIndices")?)?;
@@ -16,12 +27,13 @@ pub(super) fn read(node: &Node<'_>, world: DMat4) -> Result<SubdivMesh, MeshErro
     let place = |point: DVec3| if point.is_finite() { world.project_point3(point) } else { point };
     let mut mesh = SubdivMesh {
         name: node.source.to_owned(),
-        points: points.into_iter().map(place).collect(),
+        points: points.iter().copied().map(place).collect(),
         face_sizes,
         face_vertices,
         creases: creases(node)?,
         corners: corners(node)?,
         holes: node.indices("holeIndices")?.unwrap_or_default(),
+        scheme: scheme(node)?,
         boundary: boundary(node)?,
         ..SubdivMesh::default()
     };
@@ -31,14 +43,13 @@ pub(super) fn read(node: &Node<'_>, world: DMat4) -> Result<SubdivMesh, MeshErro
     if is_left_handed(node)? != (world.determinant() < 0.0) {
         turn(&mut mesh);
     }
-    Ok(mesh)
+    let digest = instances::digest(&mesh, &points);
+    Ok((mesh, digest))
 }
 
-fn scheme(node: &Node<'_>) -> Result<(), MeshError> {
-    match node.token("subdivisionScheme")?.as_deref() {
-        None | Some("catmullClark") => Ok(()),
-        Some(scheme) => Err(MeshError::SchemeUnsupported { at: node.place(), scheme: scheme.to_owned() }),
-    }
+fn scheme(node: &Node<'_>) -> Result<Scheme, MeshError> {
+    let Some(name) = node.token("subdivisionScheme")? else { return Ok(Scheme::CatmullClark) };
+    Scheme::of_name(&name).ok_or_else(|| MeshError::SchemeUnknown { at: node.place(), scheme: name })
 }
 
 fn refused(node: &Node<'_>, name: &'static str, value: &str, expected: &'static str) -> MeshError {
@@ -68,7 +79,7 @@ fn triangle_rule(node: &Node<'_>, mesh: &SubdivMesh) -> Result<(), MeshError> {
     let name = "triangleSubdivisionRule";
     match node.token(name)?.as_deref() {
         None | Some("catmullClark") => Ok(()),
-        Some("smooth") if !mesh.face_sizes.contains(&3) => Ok(()),
+        Some("smooth") if mesh.scheme != Scheme::CatmullClark || !mesh.face_sizes.contains(&3) => Ok(()),
         Some(other) => Err(refused(node, name, other, "catmullClark, or smooth for meshes without triangles")),
     }
 }
