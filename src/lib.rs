@@ -36,6 +36,7 @@ pub mod compare;
 pub mod curves;
 pub mod field;
 pub mod gpu;
+pub mod memory;
 pub mod mesh;
 pub mod osd;
 pub mod output;

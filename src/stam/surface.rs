@@ -2,7 +2,7 @@
 
 use super::class::{ClassTable, WINDOW_POINTS};
 use crate::mesh::SubdivMesh;
-use crate::patch::{Adjacency, PHANTOM, Patch, PatchError, PatchKind, Patches, Refinement, RingClass, slot};
+use crate::patch::{Adjacency, PHANTOM, Patch, PatchError, PatchKind, Patches, Refinement, RingClass, Watch, slot};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -42,7 +42,15 @@ impl LimitSurface {
     /// # Errors
     /// The mesh is not valid, OpenSubdiv refuses it, or a face stays without a closed form.
     pub fn new(mesh: &SubdivMesh) -> Result<Self, PatchError> {
-        let (patches, points) = Patches::with_points(mesh)?;
+        Self::watched(mesh, &|_, _| ())
+    }
+
+    /// As [`new`](Self::new); `watch` is told how far it is.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn watched(mesh: &SubdivMesh, watch: Watch<'_>) -> Result<Self, PatchError> {
+        let (patches, points) = Patches::with_points(mesh, watch)?;
         Ok(Self::of(patches, points, mesh))
     }
 
@@ -81,6 +89,11 @@ impl LimitSurface {
     /// Index into [`classes`](Self::classes) of an irregular patch.
     pub fn class(&self, patch: usize) -> Option<usize> {
         self.patches.class(patch)
+    }
+
+    /// Bytes of patches and points; tables of classes are small beside them.
+    pub fn bytes(&self) -> u64 {
+        self.patches.bytes() + size_of_val(&self.points[..]) as u64
     }
 
     /// Number of ptex faces, holes included.
