@@ -5,8 +5,8 @@ use crate::mesh::{Scheme, SubdivMesh};
 use crate::osd::INFINITE_SHARPNESS;
 
 /// Bytes that a refined face takes while its piece is at work: OpenSubdiv's topology, our copy and the walk over it. (Measured on
-/// meshes of triangles, quads and creases: 380 to 540.)
-const FACE: u64 = 560;
+/// meshes of triangles, quads and creases: 380 to 620.)
+const FACE: u64 = 640;
 
 /// Faces of all levels that refinement to `isolation` gives, at most about: each vertex that is refined at a level brings the
 /// children of its faces and some round them, and no level has more faces than uniform refinement.

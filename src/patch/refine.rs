@@ -1,6 +1,6 @@
 //! From a control mesh to its patches, a piece at a time.
 
-use super::piece::{Division, Piece};
+use super::piece::{Division, PIECE, Piece};
 use super::{Node, PatchError, Patches, RingClass, SupportKind, flat, forecast, loop_tree, tree};
 use crate::memory;
 use crate::mesh::{Scheme, SubdivMesh};
@@ -49,6 +49,11 @@ impl Ledger {
         }
     }
 
+    /// Pieces that are made before they are put together: enough to keep all cores busy when some take longer.
+    fn at_once(&self) -> usize {
+        2 * self.workers as usize
+    }
+
     /// Refuses where what is kept of all pieces, judged by those that are done, and as many pieces as this one, whose faces take
     /// `working` bytes, exceed the limit. Then counts in a piece: its faces and bytes.
     fn check(&self, working: u64, piece: Option<(usize, u64)>) -> Result<(), PatchError> {
@@ -57,7 +62,8 @@ impl Ledger {
             done.0 += faces as u64;
             done.1 += bytes + if self.keeps_refiners { working } else { 0 };
         }
-        let kept = if done.0 == 0 { 0.0 } else { done.1 as f64 * self.faces as f64 / done.0 as f64 };
+        let twice = if done.0 == self.faces { 0.0 } else { (self.at_once() * PIECE) as f64 };
+        let kept = if done.0 == 0 { 0.0 } else { done.1 as f64 * (self.faces as f64 + twice) / done.0 as f64 };
         Ok(memory::check(self.mesh + kept as u64 + working.saturating_mul(self.workers))?)
     }
 }
@@ -204,8 +210,6 @@ fn refine<R: Send>(
     finish: impl Fn(Refined) -> Result<R, PatchError> + Sync,
     mut keep: impl FnMut(R),
 ) -> Result<Patches, PatchError> {
-    /// Pieces that are made before they are put together: enough to keep the cores of a workstation busy.
-    const BATCH: usize = 16;
     let isolation = isolation(mesh);
     let pieces = division.as_ref().map_or(1, Division::count);
     let finished = AtomicUsize::new(0);
@@ -253,8 +257,9 @@ fn refine<R: Send>(
     let mut out = Patches { triangles: mesh.scheme == Scheme::Loop, ..Patches::default() };
     let (mut classes, mut lines, mut vertices) = (HashMap::new(), HashMap::new(), 0usize);
     // A few at a time, so that what is put together is not there twice.
-    for batch in (0..pieces).step_by(BATCH) {
-        let batch: Vec<Result<_, PatchError>> = (batch..pieces.min(batch + BATCH))
+    let at_once = ledger.at_once();
+    for batch in (0..pieces).step_by(at_once) {
+        let batch: Vec<Result<_, PatchError>> = (batch..pieces.min(batch + at_once))
             .into_par_iter()
             .map_init(Vec::new, |local, index| one(division.piece(index, local)))
             .collect();
