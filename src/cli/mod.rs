@@ -130,7 +130,9 @@ fn load_quads(path: Option<&Path>, command: &str) -> Result<SubdivMesh, Failure>
     match mesh.scheme {
         Scheme::Loop => Err(Failure::of(
             &mesh,
-            format!("the scheme loop is not supported by {command}; eval, info and verify do, or use catmullClark"),
+            format!(
+                "the scheme loop is not supported by {command}; render, eval, info and verify do, or use catmullClark"
+            ),
         )),
         _ => Ok(mesh),
     }

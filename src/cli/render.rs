@@ -8,7 +8,7 @@ use super::frames::FramesArgs;
 use super::patches::PatchesArgs;
 use super::rig::RigArgs;
 use super::settings::{made_by, mesh_digest};
-use super::{Failure, Steps, load_quads, progress};
+use super::{Failure, Steps, load, progress};
 use crate::field::{CurvatureKind, Method, Pattern, PlaneCurve, Scout};
 use crate::gpu::{Gpu, MAX_ENLARGE, MAX_PROXY_LEVEL, MAX_SAMPLES, Pipeline, Stage, TableLayout, Tables, View, tables};
 use crate::output::{
@@ -165,7 +165,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     args.rig.check_apart(&mut files)?;
     let pattern = rig.pattern.read(&rig.method()).map_err(Failure::Bad)?;
     let bar = progress("drawing".to_owned());
-    let mesh = account.time("read", || load_quads(args.mesh.as_deref(), "render"))?;
+    let mesh = account.time("read", || load(args.mesh.as_deref()))?;
     let surface =
         account.time("patches and classes", || LimitSurface::new(&mesh)).map_err(|e| Failure::of(&mesh, e))?;
     let scout = account.time("fit", || Scout::new(&surface)).ok_or_else(|| {

@@ -105,6 +105,9 @@ impl View {
         if self.field.method.reads_curvature() && tables.content() == Content::Tails {
             return fail("curvature is read from tables in the expanded layout only (--tables expanded)".into());
         }
+        if tables.has_triangles() && self.pipeline != Pipeline::Exact {
+            return fail("the scheme loop is drawn by the pipeline exact only (--pipeline exact)".into());
+        }
         let Camera { size, .. } = self.camera;
         if size.iter().any(|n| !(1..=MAX_SIZE).contains(n)) {
             return fail(format!("picture size {}x{}: each side must be 1 to {MAX_SIZE} pixels", size[0], size[1]));

@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 mod flat;
+mod pixels;
 mod properties;
 mod reference;
 mod refusals;

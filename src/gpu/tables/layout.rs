@@ -2,7 +2,7 @@
 
 use super::basis::Basis;
 use super::{PatchSource, Storage, TABLE_LEVELS};
-use crate::gpu::shader::{LEVEL_TEXELS, SCALE_LEVELS};
+use crate::gpu::shader::{LEVEL_TEXELS, SCALE_LEVELS, TRIANGLE_TEXELS};
 use rayon::prelude::*;
 use std::collections::HashSet;
 use std::fmt;
@@ -90,6 +90,8 @@ pub(super) struct Plan {
     pub bases: Vec<Option<Basis>>,
     /// Some patches are [`Storage::Gregory`].
     pub has_gregory: bool,
+    /// Patches are triangles.
+    pub has_triangles: bool,
     /// Texels in the table of points: matrices first, then patches.
     pub texels: u64,
     /// Bytes of all tables.
@@ -121,13 +123,16 @@ impl Plan {
             false => Vec::new(),
         };
         let has_gregory = census.gregory > 0;
-        let mut plan = Plan { layout, expanded, bases, has_gregory, texels: 0, bytes: 0 };
+        let has_triangles = census.triangles + census.irregular_triangles > 0;
+        let mut plan = Plan { layout, expanded, bases, has_gregory, has_triangles, texels: 0, bytes: 0 };
         let matrices: usize = (0..plan.bases.len()).map(|class| plan.matrix_texels(class)).sum();
         let irregular: usize =
             census.classes.iter().enumerate().map(|(class, &count)| count * plan.irregular_texels(Some(class))).sum();
         let rest = census.regular * REGULAR_TEXELS
             + census.gregory * GREGORY_TEXELS
-            + census.classless * plan.irregular_texels(None);
+            + census.classless * plan.irregular_texels(None)
+            + census.triangles * plan.patch_texels(Storage::Triangle, None)
+            + census.irregular_triangles * plan.patch_texels(Storage::IrregularTriangle, None);
         plan.texels = (matrices + irregular + rest) as u64;
         plan.bytes =
             16 * (source.count() as u64 + plan.texels) + 8 * u64::from(SCALE_LEVELS) * census.eigenvalues as u64;
@@ -145,6 +150,8 @@ impl Plan {
             Storage::Regular => REGULAR_TEXELS,
             Storage::Gregory => GREGORY_TEXELS,
             Storage::Irregular => self.irregular_texels(class),
+            Storage::Triangle => TRIANGLE_TEXELS as usize,
+            Storage::IrregularTriangle => TABLE_LEVELS * TRIANGLE_TEXELS as usize + 1,
         }
     }
 
@@ -171,14 +178,23 @@ struct Census {
     classes: Vec<usize>,
     /// Irregular patches without a class.
     classless: usize,
+    triangles: usize,
+    irregular_triangles: usize,
     /// Different values of lambda.
     eigenvalues: usize,
 }
 
 impl Census {
     fn new<S: PatchSource + ?Sized>(source: &S) -> Census {
-        let mut census =
-            Census { regular: 0, gregory: 0, classes: vec![0; source.classes().len()], classless: 0, eigenvalues: 0 };
+        let mut census = Census {
+            regular: 0,
+            gregory: 0,
+            classes: vec![0; source.classes().len()],
+            classless: 0,
+            triangles: 0,
+            irregular_triangles: 0,
+            eigenvalues: 0,
+        };
         let mut eigenvalues = HashSet::new();
         for patch in 0..source.count() {
             match (source.storage(patch), source.class(patch)) {
@@ -189,9 +205,11 @@ impl Census {
                     eigenvalues.insert(source.classes()[class].lambda.to_bits());
                 }
                 (Storage::Irregular, None) => census.classless += 1,
+                (Storage::Triangle, _) => census.triangles += 1,
+                (Storage::IrregularTriangle, _) => census.irregular_triangles += 1,
             }
         }
-        census.eigenvalues = eigenvalues.len() + usize::from(census.classless > 0);
+        census.eigenvalues = eigenvalues.len() + usize::from(census.classless + census.irregular_triangles > 0);
         census
     }
 }

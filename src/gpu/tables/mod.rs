@@ -50,6 +50,7 @@ pub struct Tables {
     bounds: [DVec3; 2],
     layout: TableLayout,
     has_gregory: bool,
+    has_triangles: bool,
     size: u64,
     unit: f64,
 }
@@ -75,6 +76,11 @@ impl Tables {
         self.cells.iter().map(|&([u, v], _)| 0.5f64.powi(i32::from(u) + i32::from(v))).sum()
     }
 
+    /// Whether patches are triangles.
+    pub fn has_triangles(&self) -> bool {
+        self.has_triangles
+    }
+
     /// Box round the surface.
     pub fn bounds(&self) -> [DVec3; 2] {
         self.bounds
@@ -93,6 +99,7 @@ impl Tables {
     /// What the passes that read them are compiled for.
     pub(super) fn content(&self) -> Content {
         match self.layout {
+            _ if self.has_triangles => Content::Triangles,
             _ if self.has_gregory => Content::Gregory,
             TableLayout::Expanded => Content::Points,
             _ => Content::Tails,
@@ -154,6 +161,7 @@ pub(super) fn upload<S: PatchSource + ?Sized>(
         bounds,
         layout: plan.layout,
         has_gregory: plan.has_gregory,
+        has_triangles: plan.has_triangles,
         unit,
     })
 }
