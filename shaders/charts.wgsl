@@ -21,12 +21,12 @@ fn bernstein_derivative(t: f32) -> vec4f {
     return vec4f(-3.0 * s * s, 3.0 * s * (s - 2.0 * t), 3.0 * t * (2.0 * s - t), 3.0 * t * t);
 }
 
-// How far, in samples times weight, a point is beyond the diagonal where a triangle ends, if the chart is one that crosses it: half of
-// what u + v is too much taken from each. The diagonal is at the next power of two above u + v of the chart's first corner; of
-// charts in triangles that are turned, whose size is below zero, at the next one below. `a`, `b`: derivatives.
-fn overshoot(c: Corner, t: vec2f, a: vec2f, b: vec2f) -> f32 {
+// How far a point is beyond the diagonal where a triangle ends, if the chart is one that crosses it: half of what u + v is too
+// much for each, but none is left below zero. The diagonal is at the next power of two above u + v of the chart's first corner; of charts in triangles
+// that are turned, whose size is below zero, at the next one below.
+fn overshoot(c: Corner, t: vec2f) -> vec2f {
     if c.start.z > 0.0 {
-        return 0.0;
+        return vec2f(0.0);
     }
     let turned = c.place.z < 0.0;
     let first = c.place.x + c.place.y;
@@ -36,8 +36,10 @@ fn overshoot(c: Corner, t: vec2f, a: vec2f, b: vec2f) -> f32 {
     let diagonal = bitcast<f32>((exponent + select(1u, 0u, turned)) << 23u);
     let size = abs(c.place.zw);
     let inside = select(diagonal - first, first - diagonal, turned);
-    let excess = max(dot(size, t) - inside, 0.0);
-    return length(0.5 * excess * (a / size.x + b / size.y));
+    let place = size * t;
+    let excess = max(place.x + place.y - inside, 0.0);
+    let from_v = min(excess - min(0.5 * excess, place.x), place.y);
+    return vec2f(excess - from_v, from_v) / size;
 }
 
 @fragment
@@ -76,8 +78,11 @@ fn visible(c: Corner) -> Found {
             break;
         }
     }
+    // What lies beyond the diagonal of a triangle goes back to it.
+    let past = overshoot(c, t);
+    t -= past;
+    beyond = max(beyond, length(a * past.x + b * past.y));
     let uv = c.place.xy + c.place.zw * t;
-    let past = overshoot(c, t, a, b);
     let bu = bernstein(t.x);
     let bv = bernstein(t.y);
     let x = dot(vec4f(dot(c.x0, bu), dot(c.x1, bu), dot(c.x2, bu), dot(c.x3, bu)), bv);
@@ -91,7 +96,7 @@ fn visible(c: Corner) -> Found {
     let depth = lens.scale * (bitcast<f32>(c.id.w) - z) / weight;
     let converged = moved < SETTLED;
     // Greater than 1: before the near plane of an orthographic view.
-    if depth > 1.0 || converged && max(beyond, past) > BAND * weight {
+    if depth > 1.0 || converged && beyond > BAND * weight {
         discard;
     }
     let state = select(STATE_DOUBTFUL, STATE_CHART, converged);

@@ -1,5 +1,6 @@
 //! Flags, typed.
 
+use super::scene::SceneArgs;
 use crate::osd::MAX_ISOLATION;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
@@ -49,6 +50,8 @@ pub(super) enum Backend {
 pub(super) struct EvalArgs {
     /// Control mesh (.obj, .usd, .usda, .usdc or .usdz)
     pub mesh: Option<PathBuf>,
+    #[command(flatten)]
+    pub scene: SceneArgs,
     /// CSV file with the header face,u,v: ptex face, u and v in 0 to 1
     #[arg(long, value_name = "FILE")]
     pub samples: PathBuf,
@@ -65,6 +68,8 @@ pub(super) struct VerifyArgs {
     /// Control meshes: files, folders (with those in them), and patterns such as 'meshes/*.obj'
     #[arg(value_name = "MESH")]
     pub meshes: Vec<PathBuf>,
+    #[command(flatten)]
+    pub scene: SceneArgs,
     /// Write the report as JSON (docs/verify-report.schema.json)
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
@@ -104,6 +109,8 @@ pub(super) struct VerifyArgs {
 pub(super) struct GlintsArgs {
     /// Control mesh (.obj, .usd, .usda, .usdc or .usdz)
     pub mesh: Option<PathBuf>,
+    #[command(flatten)]
+    pub scene: SceneArgs,
     /// A light point; give as many as there are
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true, required = true)]
     pub light_point: Vec<glam::DVec3>,
@@ -125,6 +132,8 @@ pub(super) struct GlintsArgs {
 pub(super) struct InfoArgs {
     /// Control mesh (.obj, .usd, .usda, .usdc or .usdz)
     pub mesh: Option<PathBuf>,
+    #[command(flatten)]
+    pub scene: SceneArgs,
     /// Print JSON
     #[arg(long)]
     pub json: bool,

@@ -17,8 +17,8 @@ use std::path::Path;
 /// Both surfaces on the adapter.
 pub(super) struct Pair<'a> {
     gpu: &'a Gpu,
-    surface: &'a LimitSurface,
-    exact: &'a Tables,
+    surface: LimitSurface,
+    exact: Tables,
     osd: Tables,
     patches: AdaptivePatches,
     isolation: Isolation,
@@ -46,19 +46,25 @@ impl<'a> Pair<'a> {
     pub fn new(
         args: &RenderArgs,
         mesh: &SubdivMesh,
-        surface: &'a LimitSurface,
+        surface: &LimitSurface,
         gpu: &'a Gpu,
-        exact: &'a Tables,
+        exact: Tables,
         account: &mut Account,
     ) -> Result<Pair<'a>, Failure> {
         let isolation = args.patches.isolation().unwrap_or(Isolation::DEFAULT);
         let (patches, osd) = args.patches.upload_osd(mesh, isolation, gpu, account)?;
-        Ok(Pair { gpu, surface, exact, osd, patches, isolation, end_cap: args.patches.end_cap() })
+        let (surface, end_cap) = (surface.clone(), args.patches.end_cap());
+        Ok(Pair { gpu, surface, exact, osd, patches, isolation, end_cap })
+    }
+
+    /// The tables of the exact limit.
+    pub fn exact(&self) -> &Tables {
+        &self.exact
     }
 
     /// Draws one view of both, and what differs.
     pub fn take(&self, path: &Path, view: &View, made_by: &str, account: &mut Account) -> Result<(), Failure> {
-        let frames = [self.exact, &self.osd].map(|tables| self.gpu.render(tables, view));
+        let frames = [&self.exact, &self.osd].map(|tables| self.gpu.render(tables, view));
         let [exact, osd] = frames;
         let frames = [exact?, osd?];
         for frame in &frames {
@@ -66,11 +72,11 @@ impl<'a> Pair<'a> {
             account.picture(frame.summary);
         }
         let exactly = View { pipeline: Pipeline::Exact, enlarge: 1.0, ..view.clone() };
-        let image = self.gpu.inspect(self.exact, &exactly)?;
+        let image = self.gpu.inspect(&self.exact, &exactly)?;
         let seen = self.gpu.inspect(&self.osd, view)?;
         account.add(&image.timings);
         account.add(&seen.timings);
-        let exact = Exact { surface: self.surface, view, image: &image };
+        let exact = Exact { surface: &self.surface, view, image: &image };
         let comparison = account.time("compare", || exact.compare(&self.patches, &seen));
         let (size, pixels) = sheet(comparison.size, &comparison_panels(frames, &seen, &comparison, self.name()));
         account.time("write", || write_png(path, size, &pixels, made_by))?;

@@ -2,7 +2,7 @@
 
 use super::args::{Backend, EvalArgs};
 use super::rows::{Rows, check_place, parameter, shortest};
-use super::{Failure, load, write_out};
+use super::{Failure, write_out};
 use crate::gpu::{self, Gpu};
 use crate::mesh::SubdivMesh;
 use crate::osd::{Answer, Far, MAX_ISOLATION};
@@ -31,7 +31,7 @@ impl Sample {
 
 pub(super) fn run(args: &EvalArgs) -> Result<(), Failure> {
     args.output.as_deref().map_or(Ok(()), check_writable)?;
-    let mesh = load(args.mesh.as_deref())?;
+    let mesh = args.scene.load(args.mesh.as_deref())?;
     let surface = LimitSurface::new(&mesh).map_err(|e| Failure::of(&mesh, e))?;
     let samples = read(&args.samples, &surface)?;
     let jets = match args.backend {

@@ -1,6 +1,7 @@
-//! Series of pictures: turntables and light sweeps, numbered files that a later run can go on with.
+//! Series of pictures: turntables, light sweeps and animations, numbered files that a later run can go on with.
 
 use super::Failure;
+use super::numbered::Numbered;
 use super::render::Format;
 use super::rig::orbited;
 use super::settings::method_name;
@@ -14,10 +15,6 @@ use std::path::{Path, PathBuf};
 const MOST_FRAMES: i64 = 100_000;
 /// Most degrees or periods of a series: its frames would be whole turns apart otherwise, and digits run out.
 const MOST_WAY: f64 = 1e6;
-/// Least digits of a frame's number in a file name.
-const DIGITS: usize = 4;
-/// Most digits of a frame's number: file names end at some 255 bytes.
-const MOST_DIGITS: usize = 100;
 
 #[derive(Debug, Args)]
 pub(super) struct FramesArgs {
@@ -45,15 +42,20 @@ fn way(text: &str) -> Result<f64, String> {
 }
 
 impl FramesArgs {
-    /// Refuses flags that contradict each other or miss one another.
-    pub(super) fn check(&self) -> Result<(), Failure> {
+    /// Refuses flags that contradict each other or miss one another. `animated`: the mesh has a series of times, and with them
+    /// the number of pictures.
+    pub(super) fn check(&self, animated: bool) -> Result<(), Failure> {
         let bad = |what: &str| Err(Failure::Bad(what.to_owned()));
         match (self.frames, self.orbit, self.sweep_light) {
+            (Some(_), ..) if animated => bad("--time FIRST:LAST says how many pictures there are; leave --frames out"),
+            (None, Some(_), None) | (None, None, Some(_) | None) if animated => Ok(()),
             (_, Some(_), Some(_)) => bad("--orbit and --sweep-light are two series; give one of them"),
             (Some(_), None, None) => bad("--frames needs something that changes; add --orbit DEG or --sweep-light"),
             (None, Some(_), None) => bad("--orbit needs the number of pictures; add --frames N"),
             (None, None, Some(_)) => bad("--sweep-light needs the number of pictures; add --frames N"),
-            (None, ..) if self.resume => bad("--resume goes on with a series; add --frames N, or leave it out"),
+            (None, ..) if self.resume => {
+                bad("--resume goes on with a series; add --frames N or --time FIRST:LAST, or leave it out")
+            }
             _ => Ok(()),
         }
     }
@@ -79,21 +81,23 @@ impl FramesArgs {
         }
     }
 
-    /// Files of the series in order; `output` itself without one.
-    pub(super) fn paths(&self, output: &Path) -> Result<Vec<PathBuf>, Failure> {
-        let Some(count) = self.frames else { return Ok(vec![output.to_owned()]) };
-        let name = output.file_name().and_then(|name| name.to_str()).and_then(|name| Numbered::new(name, count));
+    /// Files of the series in order; `output` itself without one. An animation brings the numbers of its frames.
+    pub(super) fn paths(&self, output: &Path, animation: Option<Vec<u32>>) -> Result<Vec<PathBuf>, Failure> {
+        let Some(numbers) = animation.or_else(|| self.frames.map(|count| (1..=count).collect())) else {
+            return Ok(vec![output.to_owned()]);
+        };
+        let last = numbers.last().copied().unwrap_or_default();
+        let name = output.file_name().and_then(|name| name.to_str()).and_then(|name| Numbered::new(name, last));
         let name = name.ok_or_else(|| {
             let what = "cannot number this name; have one #### or %04d in it, or neither";
             Failure::Bad(format!("{}: {what}", output.display()))
         })?;
-        Ok((1..=count).map(|frame| output.with_file_name(name.of(frame))).collect())
+        Ok(numbers.into_iter().map(|frame| output.with_file_name(name.of(frame))).collect())
     }
 
-    /// The rig of frame `index` of the series, counted from 0; the first one is `rig` itself.
-    pub(super) fn rig(&self, rig: &FittedRig, pattern: &Pattern, index: u32) -> FittedRig {
+    /// The rig of frame `index` of the `count` of a series, counted from 0; the first one is `rig` itself.
+    pub(super) fn rig(&self, rig: &FittedRig, pattern: &Pattern, index: u32, count: u32) -> FittedRig {
         let mut rig = rig.clone();
-        let count = self.frames.unwrap_or(1);
         if let Some(degrees) = self.orbit {
             let angle = degrees.to_radians() * progress(index, count, degrees / 360.0);
             if angle != 0.0 {
@@ -114,6 +118,11 @@ impl FramesArgs {
             }
         }
         rig
+    }
+
+    /// Whether frames that are there stay.
+    pub(super) fn resumes(&self) -> bool {
+        self.resume
     }
 
     /// Whether a frame is to be drawn: not where `--resume` finds it with the same settings.
@@ -143,74 +152,9 @@ fn progress(index: u32, count: u32, rounds: f64) -> f64 {
     f64::from(index) / f64::from(steps)
 }
 
-/// A file name with a place for the frame's number.
-struct Numbered {
-    before: String,
-    digits: usize,
-    after: String,
-}
-
-impl Numbered {
-    /// `None` where the name has several places, one for absurdly many digits, or none and no extension.
-    fn new(name: &str, count: u32) -> Option<Numbered> {
-        let mut places = places(name);
-        let (start, end, digits) = match places.next() {
-            Some(place) => place,
-            None => {
-                let dot = name.rfind('.')?;
-                // So many digits that names sort like numbers.
-                let digits = DIGITS.max(count.to_string().len());
-                return Some(Numbered { before: format!("{}_", &name[..dot]), digits, after: name[dot..].to_owned() });
-            }
-        };
-        let fine = places.next().is_none() && digits <= MOST_DIGITS;
-        fine.then(|| Numbered { before: name[..start].to_owned(), digits, after: name[end..].to_owned() })
-    }
-
-    fn of(&self, frame: u32) -> String {
-        format!("{}{frame:0digits$}{}", self.before, self.after, digits = self.digits)
-    }
-}
-
-/// Start, end and digits of every `####` and `%04d` of a name.
-fn places(name: &str) -> impl Iterator<Item = (usize, usize, usize)> {
-    let bytes = name.as_bytes();
-    let run = move |start: usize, what: fn(&u8) -> bool| bytes[start..].iter().take_while(|&b| what(b)).count();
-    (0..bytes.len()).filter_map(move |start| match bytes[start] {
-        b'#' if start == 0 || bytes[start - 1] != b'#' => {
-            let digits = run(start, |&b| b == b'#');
-            Some((start, start + digits, digits))
-        }
-        b'%' => {
-            let digits = run(start + 1, u8::is_ascii_digit);
-            let end = start + 1 + digits;
-            let wide = name[start + 1..end].parse().unwrap_or(if digits == 0 { 1 } else { usize::MAX });
-            (bytes.get(end) == Some(&b'd')).then_some((start, end + 1, wide))
-        }
-        _ => None,
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn numbers_come_where_the_name_says() {
-        let name = |name: &str, count: u32, frame: u32| Numbered::new(name, count).map(|name| name.of(frame));
-        let some = |name: &str| Some(name.to_owned());
-        assert_eq!(name("view.png", 36, 1), some("view_0001.png"));
-        assert_eq!(name("a.b.exr", 20_000, 12), some("a.b_00012.exr"));
-        assert_eq!(name("car-##.png", 200, 7), some("car-07.png"));
-        assert_eq!(name("car-##.png", 200, 123), some("car-123.png"));
-        assert_eq!(name("%06d.png", 5, 5), some("000005.png"));
-        assert_eq!(name("a%d.png", 5, 5), some("a5.png"));
-        assert_eq!(name("100%.png", 5, 5), some("100%_0005.png"));
-        assert_eq!(name("\u{fc}#.png", 5, 5), some("\u{fc}5.png"));
-        for bad in ["#-#.png", "%d_%02d.png", "#%d.png", "%0999d.png", "%0999999999999999999999d.png"] {
-            assert_eq!(name(bad, 5, 1), None, "{bad}");
-        }
-    }
 
     #[test]
     fn whole_rounds_loop_and_others_arrive() {

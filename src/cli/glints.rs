@@ -2,7 +2,7 @@
 
 use super::args::GlintsArgs;
 use super::rows::shortest;
-use super::{Failure, load_quads, write_out};
+use super::{Failure, write_out};
 use crate::field::{DEFAULT_FOV, Scout, sample_rig};
 use crate::output::check_writable;
 use crate::physical::{Nature, PathEnd, PathPoint, physical_reflections};
@@ -17,7 +17,7 @@ pub(super) fn run(args: &GlintsArgs) -> Result<(), Failure> {
     if args.eye_direction == Some(DVec3::ZERO) {
         return Err(Failure::Bad("--eye-direction has no direction; give one that is not 0,0,0".to_owned()));
     }
-    let mesh = load_quads(args.mesh.as_deref(), "glints")?;
+    let mesh = args.scene.load_quads(args.mesh.as_deref(), "glints")?;
     let surface = LimitSurface::new(&mesh).map_err(|e| Failure::of(&mesh, e))?;
     let eye = match (args.eye, args.eye_direction) {
         (_, Some(direction)) => PathEnd::Direction(direction),

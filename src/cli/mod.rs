@@ -10,11 +10,13 @@ mod frames;
 mod glints;
 mod info;
 mod lines;
+mod numbered;
 mod patches;
 mod quality;
 mod render;
 mod rig;
 mod rows;
+mod scene;
 mod settings;
 mod verify;
 
@@ -22,11 +24,11 @@ use args::{Cli, Command};
 use clap::Parser;
 use std::fmt::Display;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use crate::gpu::GpuError;
-use crate::mesh::{self, MeshError, Scheme, SubdivMesh};
+use crate::mesh::{MeshError, SubdivMesh};
 use crate::output::OutputError;
 
 /// Why a command stopped, and with which exit code.
@@ -114,28 +116,6 @@ pub fn run() -> ExitCode {
     };
     eprintln!("catoptric: {message}");
     ExitCode::from(code)
-}
-
-/// Reads a mesh, or makes the built-in sample.
-fn load(path: Option<&Path>) -> Result<SubdivMesh, MeshError> {
-    match path {
-        Some(path) => mesh::read(path),
-        None => Ok(mesh::sample()),
-    }
-}
-
-/// Reads a mesh for a command that does not know triangles under Loop's rules.
-fn load_quads(path: Option<&Path>, command: &str) -> Result<SubdivMesh, Failure> {
-    let mesh = load(path)?;
-    match mesh.scheme {
-        Scheme::Loop => Err(Failure::of(
-            &mesh,
-            format!(
-                "the scheme loop is not supported by {command}; render, eval, info and verify do, or use catmullClark"
-            ),
-        )),
-        _ => Ok(mesh),
-    }
 }
 
 /// Writes to a file, whole, or to standard output.

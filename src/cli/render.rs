@@ -7,15 +7,17 @@ use super::field::{ColourArgs, FieldArgs, PatternArgs};
 use super::frames::FramesArgs;
 use super::patches::PatchesArgs;
 use super::rig::RigArgs;
-use super::settings::{made_by, mesh_digest};
-use super::{Failure, Steps, load, progress};
+use super::scene::{AnimationArgs, Source, say_notes};
+use super::settings::{MeshAt, made_by, mesh_digest};
+use super::{Failure, Steps, progress};
 use crate::field::{CurvatureKind, Method, Pattern, PlaneCurve, Scout};
 use crate::gpu::{Gpu, MAX_ENLARGE, MAX_PROXY_LEVEL, MAX_SAMPLES, Pipeline, Stage, TableLayout, Tables, View, tables};
+use crate::mesh::SubdivMesh;
 use crate::output::{
     Heat, Layers, Scale, check_writable, draw_legend, heat, read_exr_made_by, read_png_made_by, write_exr, write_png,
 };
 use crate::rig::{CameraRig, FittedRig, PatternRig, Rig};
-use crate::stam::LimitSurface;
+use crate::stam::{LimitSurface, MovingSurface};
 use clap::{Args, ValueEnum};
 use std::fs::File;
 use std::io::BufReader;
@@ -25,6 +27,8 @@ use std::path::{Path, PathBuf};
 pub(super) struct RenderArgs {
     /// Control mesh (.obj, .usd, .usda, .usdc or .usdz)
     pub(super) mesh: Option<PathBuf>,
+    #[command(flatten)]
+    pub(super) scene: AnimationArgs,
     /// Picture to write: .png, or .exr with linear colour, position, normal, ptex parameters, field and residual
     #[arg(short, long, value_name = "FILE", default_value = "view.png")]
     pub(super) output: PathBuf,
@@ -141,7 +145,8 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let samples = if args.show.is_some() { 1 } else { args.samples };
     let format = Format::of(&args.output)?;
     args.rig.check()?;
-    args.frames.check()?;
+    let numbers = args.scene.numbers();
+    args.frames.check(numbers.is_some())?;
     args.patches.check()?;
     if args.enlarge.is_some() && !matches!(args.pipeline, PipelineName::Points) {
         return Err(Failure::Bad("--enlarge is for --pipeline points; leave it out, or choose that one".to_owned()));
@@ -153,7 +158,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
         let what = if args.show.is_some() { "--show" } else { "an .exr" };
         return Err(Failure::Bad(format!("--compare draws a .png of its own kind; it does not go with {what}")));
     }
-    let paths = args.frames.paths(&args.output)?;
+    let paths = args.frames.paths(&args.output, numbers)?;
     check_writable(&paths[0])?;
     if let Some(json) = &args.json {
         check_writable(json)?;
@@ -165,52 +170,59 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     args.rig.check_apart(&mut files)?;
     let pattern = rig.pattern.read(&rig.method()).map_err(Failure::Bad)?;
     let bar = progress("drawing".to_owned());
-    let mesh = account.time("read", || load(args.mesh.as_deref()))?;
-    let surface =
-        account.time("patches and classes", || LimitSurface::new(&mesh)).map_err(|e| Failure::of(&mesh, e))?;
-    let scout = account.time("fit", || Scout::new(&surface)).ok_or_else(|| {
+    let source = args.scene.source(args.mesh.as_deref())?;
+    let times = args.scene.times();
+    let mut body = account.time("read", || source.at(times[0])).map_err(Failure::Bad).and_then(|mesh| {
+        say_notes(args.mesh.as_deref(), &mesh);
+        account.time("patches and classes", || Body::new(mesh, times.len() > 1))
+    })?;
+    let scout = account.time("fit", || Scout::new(body.surface())).ok_or_else(|| {
         Failure::Bad(format!(
             "{}: no face has a limit surface (holes, or boundary rule none); nothing to draw",
-            mesh.name
+            body.mesh.name
         ))
     })?;
     args.frames.check_method(&rig.method())?;
-    let fitted = args.rig.fit(&rig.or_up(mesh.up), &scout, args.mesh.is_none())?;
+    let fitted = args.rig.fit(&rig.or_up(body.mesh.up), &scout, args.mesh.is_none())?;
     let pattern = PatternRig::fitted(pattern, &scout, &fitted);
     let name = rig.pattern.name_for(&fitted.method);
-    let digest = mesh_digest(&mesh);
-    let mut shots = Vec::new();
-    for (index, path) in paths.iter().enumerate() {
-        let rig = args.frames.rig(&fitted, &pattern, index as u32);
-        let view = args.view(&rig, pattern.clone());
-        let made_by = made_by(args, digest, &rig, &name, &view);
-        if args.frames.is_missing(path, &made_by)? {
-            shots.push(Shot { path, view, made_by });
-        }
-    }
     let save_rig = || args.rig.save(&fitted, PatternRig::of(name.clone(), &pattern));
-    if shots.is_empty() {
+    let shot = |index: usize, digest: u64| {
+        let rig = args.frames.rig(&fitted, &pattern, index as u32, paths.len() as u32);
+        let view = args.view(&rig, pattern.clone());
+        let time = times[index.min(times.len() - 1)];
+        let made_by = made_by(args, MeshAt { digest, time }, &rig, &name, &view);
+        Shot { path: &paths[index], view, made_by }
+    };
+    let missing = missing(args, &source, &times, &body.mesh, paths.len(), shot)?;
+    if missing.is_empty() {
         save_rig()?;
         return account.write(args.json.as_ref(), None, samples);
     }
     let gpu = account.time("adapter", Gpu::new)?;
-    let uploaded = args.patches.upload(&mesh, &surface, args.layout(&fitted.method), &gpu, &mut account)?;
-    let pair = match args.patches.compare {
-        true => Some(Pair::new(args, &mesh, &surface, &gpu, &uploaded, &mut account)?),
-        false => None,
-    };
-    let steps = match &shots[..] {
-        [_] => None,
-        _ => Some(Steps::new(shots.len(), "frames")),
-    };
+    let layout = args.layout(&fitted.method);
+    let steps = (missing.len() > 1).then(|| Steps::new(missing.len(), "frames"));
     if steps.is_some() {
         bar.finish_and_clear();
     }
-    for shot in &shots {
-        match &pair {
-            Some(pair) => pair.take(shot.path, &shot.view, &shot.made_by, &mut account)?,
-            None => shot.take(format, args.show, &gpu, &uploaded, &mut account)?,
+    let mut drawn: Option<Drawn<'_>> = None;
+    for index in missing {
+        let time = times[index.min(times.len() - 1)];
+        if times.len() > 1 && index > 0 {
+            let mesh = account.time("read", || source.at(time)).map_err(Failure::Bad)?;
+            account.time("move", || body.move_to(mesh, time))?;
+            drawn = None;
         }
+        let ready = match drawn.take() {
+            Some(ready) => ready,
+            None => Drawn::new(args, &body, layout, &gpu, &mut account)?,
+        };
+        let shot = shot(index, body.digest);
+        match &ready {
+            Drawn::Both(pair) => pair.take(shot.path, &shot.view, &shot.made_by, &mut account)?,
+            Drawn::One(tables) => shot.take(format, args.show, &gpu, tables, &mut account)?,
+        }
+        drawn = Some(ready);
         steps.iter().for_each(Steps::done_one);
     }
     bar.finish_and_clear();
@@ -220,16 +232,120 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     account.write(args.json.as_ref(), Some(gpu.adapter()), samples)?;
     if args.timings {
         account.say_timings(gpu.adapter());
-        if !args.patches.draws_exact() {
-            eprintln!("{:<20} {:>12} bytes", "tables", uploaded.size());
-            return Ok(());
-        }
-        for layout in TableLayout::ALL {
-            let chosen = if layout == uploaded.layout() { ", chosen" } else { "" };
-            eprintln!("{:<20} {:>12} bytes{chosen}", format!("tables {layout}"), tables::bytes(&surface, layout));
-        }
+        drawn.iter().for_each(|drawn| say_tables(args, body.surface(), drawn.tables()));
     }
     Ok(())
+}
+
+/// Bytes of the tables, by layout.
+fn say_tables(args: &RenderArgs, surface: &LimitSurface, uploaded: &Tables) {
+    if !args.patches.draws_exact() {
+        eprintln!("{:<20} {:>12} bytes", "tables", uploaded.size());
+        return;
+    }
+    for layout in TableLayout::ALL {
+        let chosen = if layout == uploaded.layout() { ", chosen" } else { "" };
+        eprintln!("{:<20} {:>12} bytes{chosen}", format!("tables {layout}"), tables::bytes(surface, layout));
+    }
+}
+
+/// Indices of the pictures that are to be drawn.
+///
+/// # Errors
+/// `--resume` finds a picture with other settings, or cannot read the mesh of a time.
+fn missing<'a>(
+    args: &RenderArgs,
+    source: &Source<'_>,
+    times: &[Option<f64>],
+    first: &SubdivMesh,
+    count: usize,
+    shot: impl Fn(usize, u64) -> Shot<'a>,
+) -> Result<Vec<usize>, Failure> {
+    if !args.frames.resumes() {
+        return Ok((0..count).collect());
+    }
+    let mut digest = mesh_digest(first);
+    let mut missing = Vec::new();
+    for index in 0..count {
+        if times.len() > 1 && index > 0 {
+            digest = mesh_digest(&source.at(times[index]).map_err(Failure::Bad)?);
+        }
+        let Shot { path, made_by, .. } = shot(index, digest);
+        if args.frames.is_missing(path, &made_by)? {
+            missing.push(index);
+        }
+    }
+    Ok(missing)
+}
+
+/// The mesh of a picture and its surface.
+struct Body {
+    mesh: SubdivMesh,
+    digest: u64,
+    surface: Surface,
+}
+
+enum Surface {
+    Still(LimitSurface),
+    Moving(Box<MovingSurface>),
+}
+
+impl Body {
+    fn new(mesh: SubdivMesh, moves: bool) -> Result<Self, Failure> {
+        let surface = match moves {
+            true => MovingSurface::new(&mesh).map(|surface| Surface::Moving(Box::new(surface))),
+            false => LimitSurface::new(&mesh).map(Surface::Still),
+        };
+        let surface = surface.map_err(|error| Failure::of(&mesh, error))?;
+        Ok(Self { digest: mesh_digest(&mesh), mesh, surface })
+    }
+
+    fn surface(&self) -> &LimitSurface {
+        match &self.surface {
+            Surface::Still(surface) => surface,
+            Surface::Moving(moving) => moving.surface(),
+        }
+    }
+
+    fn move_to(&mut self, mesh: SubdivMesh, time: Option<f64>) -> Result<(), Failure> {
+        if let Surface::Moving(moving) = &mut self.surface {
+            let at = time.map_or_else(String::new, |time| format!("at time {time} "));
+            moving.move_to(&mesh).map_err(|error| Failure::Bad(format!("{}: {at}{error}", mesh.name)))?;
+        }
+        (self.digest, self.mesh) = (mesh_digest(&mesh), mesh);
+        Ok(())
+    }
+}
+
+/// What pictures of one mesh are drawn from.
+enum Drawn<'a> {
+    One(Box<Tables>),
+    /// `--compare`.
+    Both(Box<Pair<'a>>),
+}
+
+impl<'a> Drawn<'a> {
+    fn new(
+        args: &RenderArgs,
+        body: &Body,
+        layout: TableLayout,
+        gpu: &'a Gpu,
+        account: &mut Account,
+    ) -> Result<Self, Failure> {
+        let tables = args.patches.upload(&body.mesh, body.surface(), layout, gpu, account)?;
+        Ok(match args.patches.compare {
+            true => Self::Both(Box::new(Pair::new(args, &body.mesh, body.surface(), gpu, tables, account)?)),
+            false => Self::One(Box::new(tables)),
+        })
+    }
+
+    /// Those that are drawn alone, or first.
+    fn tables(&self) -> &Tables {
+        match self {
+            Self::One(tables) => tables,
+            Self::Both(pair) => pair.exact(),
+        }
+    }
 }
 
 impl RenderArgs {

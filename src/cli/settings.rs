@@ -11,6 +11,7 @@ use std::fmt::{Display, Write};
 use std::path::Path;
 
 /// A command in one line, as a shell takes it, that makes a file again.
+#[derive(Default)]
 pub(super) struct CommandLine(String);
 
 impl CommandLine {
@@ -38,6 +39,11 @@ impl CommandLine {
     /// A flag and its value.
     pub(super) fn flag(&mut self, name: &str, value: impl Display) {
         self.word(&format!("--{name}={value}"));
+    }
+
+    /// The words so far.
+    pub(super) fn into_words(self) -> String {
+        self.0
     }
 
     /// A flag without a value.
@@ -132,9 +138,10 @@ pub(super) fn method_name(method: &Method) -> String {
 /// The command that makes the picture again, with everything in it that was fitted, and digests of the files that it
 /// reads. On one adapter, pictures of the same line are the same.
 ///
-/// `mesh`: the digest of the mesh ([`mesh_digest`]); `rig`: that of `view`; `pattern`: the name of its pattern.
-pub(super) fn made_by(args: &RenderArgs, mesh: u64, rig: &FittedRig, pattern: &PatternName, view: &View) -> String {
+/// `rig`: that of `view`; `pattern`: the name of its pattern.
+pub(super) fn made_by(args: &RenderArgs, mesh: MeshAt, rig: &FittedRig, pattern: &PatternName, view: &View) -> String {
     let mut line = CommandLine::new("render", args.mesh.as_deref());
+    args.scene.record(mesh.time, &mut line);
     line.camera(&rig.camera);
     line.field(rig);
     line.pattern(&view.pattern, pattern);
@@ -158,7 +165,7 @@ pub(super) fn made_by(args: &RenderArgs, mesh: u64, rig: &FittedRig, pattern: &P
     if args.patches.compare {
         line.switch("compare");
     }
-    let mut text = line.finish(mesh, &rig.method);
+    let mut text = line.finish(mesh.digest, &rig.method);
     if let Pattern::Picture(picture) = &view.pattern {
         let mut digest = Digest::new();
         digest.bytes(bytemuck::bytes_of(&picture.size));
@@ -186,6 +193,15 @@ impl Digest {
             self.0 = (self.0 ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
         }
     }
+}
+
+/// Which mesh a picture shows.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct MeshAt {
+    /// As [`mesh_digest`].
+    pub(super) digest: u64,
+    /// The time that was asked for.
+    pub(super) time: Option<f64>,
 }
 
 /// Digest of all that the limit surface depends on.

@@ -218,6 +218,15 @@ pub enum MeshError {
     UsdIncomplete { at: Place, reason: String },
     #[error("{at}: the stage has no Mesh prim that is visible and of purpose default or render; give one that has")]
     NoMeshPrims { at: Place },
+    #[error("{at}: an OBJ has no prims; leave --prim out, or give a USD file")]
+    NoPrims { at: Place },
+    #[error(
+        "{at}: an OBJ has no time; leave --time out, give a USD file, \
+         or have #### in the name for the number of the frame"
+    )]
+    NoTime { at: Place },
+    #[error("{at}: no prim {prim} with a Mesh that is shown; there are {found}")]
+    PrimUnknown { at: Place, prim: String, found: String },
     #[error("{at}: a Mesh prim without {name}; give it points, faceVertexCounts and faceVertexIndices")]
     AttributeMissing { at: Place, name: &'static str },
     #[error("{at}: {name} is not {expected}; give it the type that the schema says")]

@@ -11,6 +11,7 @@ mod error;
 mod lines;
 mod measure;
 mod obj;
+mod parts;
 mod polygon;
 mod sample;
 mod scheme;
@@ -18,11 +19,12 @@ mod tags;
 mod usd;
 mod validate;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 
 pub use error::{MeshError, Place, Spot};
+pub use parts::{Part, PtexParts, Repeat};
 pub use sample::sample;
 pub use scheme::Scheme;
 pub use validate::{MAX_COORDINATE, MAX_VALENCE};
@@ -36,18 +38,69 @@ pub const EXTENSIONS: [&str; 5] = ["obj", "usd", "usda", "usdc", "usdz"];
 /// they are in, so a vertex that two groups share stays one vertex.
 ///
 /// All Mesh prims of a USD stage that are shown (visible, purpose default or render) become one mesh, in the order of
-/// the stage, with their points in world space and the stage's units. Values are those of the default time, or the first sample
-/// where there is no default; an attribute that is not there has its schema's fallback.
+/// the stage, with their points in world space and the stage's units; [`SubdivMesh::parts`] tells them apart. Values are those of
+/// the default time, or the first sample where there is no default; an attribute that is not there has its schema's fallback.
 ///
 /// # Errors
 /// A file that cannot be read, that is not of its format, or whose mesh does not pass [`SubdivMesh::validate`].
 /// The message is one line: `file:line: what; what to do`, or `file: /Prim/Path: what; what to do`.
 pub fn read(path: &Path) -> Result<SubdivMesh, MeshError> {
-    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
-    match extension.as_deref() {
-        Some("obj") => obj::read(path),
-        Some("usd" | "usda" | "usdc" | "usdz") => usd::read(path),
-        _ => Err(MeshError::UnsupportedFormat { at: Place::file(path) }),
+    read_choice(path, &Choice::default())
+}
+
+/// What of a file is read; by default all that is shown.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Choice {
+    /// Paths of prims: their meshes, and those of the prims below them; all if there are none.
+    pub prims: Vec<String>,
+    /// Time code at which attributes are read: between two samples numbers are interpolated, all else is that of the sample
+    /// before. `None`: the default time, and the first sample of what has samples alone.
+    pub time: Option<f64>,
+}
+
+/// As [`read`], a part of the file, at a time.
+///
+/// # Errors
+/// As [`MeshFile::open`] and [`MeshFile::read`].
+pub fn read_choice(path: &Path, choice: &Choice) -> Result<SubdivMesh, MeshError> {
+    MeshFile::open(path)?.read(choice)
+}
+
+/// A mesh file that is read more than once: a stage stays open between times.
+#[derive(Debug)]
+pub struct MeshFile(Format);
+
+#[derive(Debug)]
+enum Format {
+    Obj(PathBuf),
+    Usd(Box<usd::File>),
+}
+
+impl MeshFile {
+    /// Opens the file; the extension says the format.
+    ///
+    /// # Errors
+    /// A stage that cannot be read, or is not of its format. An OBJ is not looked at.
+    pub fn open(path: &Path) -> Result<Self, MeshError> {
+        let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+        match extension.as_deref() {
+            Some("obj") => Ok(Self(Format::Obj(path.to_owned()))),
+            Some("usd" | "usda" | "usdc" | "usdz") => Ok(Self(Format::Usd(Box::new(usd::File::open(path)?)))),
+            _ => Err(MeshError::UnsupportedFormat { at: Place::file(path) }),
+        }
+    }
+
+    /// Reads and validates what is chosen.
+    ///
+    /// # Errors
+    /// As [`read`]; a prim that is not there, or has no mesh that is shown; prims or a time of an OBJ.
+    pub fn read(&self, choice: &Choice) -> Result<SubdivMesh, MeshError> {
+        match &self.0 {
+            Format::Obj(path) if !choice.prims.is_empty() => Err(MeshError::NoPrims { at: Place::file(path) }),
+            Format::Obj(path) if choice.time.is_some() => Err(MeshError::NoTime { at: Place::file(path) }),
+            Format::Obj(path) => obj::read(path),
+            Format::Usd(file) => file.read(choice),
+        }
     }
 }
 
@@ -119,4 +172,10 @@ pub struct SubdivMesh {
     pub creasing: Creasing,
     /// Direction that points up, where the file says it (USD does); views are fitted to it.
     pub up: Option<DVec3>,
+    /// Metres that a unit is long, where the file says it (USD does). Nothing is converted: results are in the file's units.
+    pub meters_per_unit: Option<f64>,
+    /// The meshes of a USD stage, in their order, covering all faces and points; empty for a mesh from elsewhere.
+    pub parts: Vec<Part>,
+    /// What the reader passed over that shapes would show, in sentences.
+    pub notes: Vec<String>,
 }

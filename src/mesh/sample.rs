@@ -414,6 +414,6 @@ pub fn sample() -> SubdivMesh {
         scheme: Scheme::CatmullClark,
         boundary: Boundary::EdgeAndCorner,
         creasing: Creasing::Uniform,
-        up: None,
+        ..SubdivMesh::default()
     }
 }

@@ -84,6 +84,15 @@ impl SubdivMesh {
     }
 }
 
+impl SubdivMesh {
+    /// The checks of [`validate`](Self::validate) that depend on where the points are, of a mesh whose faces are valid.
+    pub(crate) fn validate_points(&self) -> Result<(), MeshError> {
+        let source = Source { name: &self.name, lines: None, first_vertex: 0 };
+        check_points(self, &source)?;
+        check_scheme(self, &source)
+    }
+}
+
 /// As [`SubdivMesh::validate`], with places as the source names them.
 pub(super) fn check(mesh: &SubdivMesh, source: &Source<'_>) -> Result<(), MeshError> {
     check_counts(mesh, &source.whole())?;

@@ -12,6 +12,7 @@ mod loop_modes;
 mod loop_rows;
 mod loop_surface;
 mod modes;
+mod moving;
 mod rings;
 mod rows;
 mod surface;
@@ -20,6 +21,7 @@ pub use class::{ClassTable, LEVELS, WINDOW_POINTS};
 pub use curvature::Curvature;
 pub use loop_rows::LOOP_WINDOW;
 pub use loop_surface::{LOOP_WINDOWS, LoopWindow};
+pub use moving::{MoveError, MovingSurface};
 pub use rings::{Grid, Rings, WINDOWS};
 pub use surface::{LimitSurface, Net};
 

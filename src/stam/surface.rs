@@ -4,6 +4,7 @@ use super::box_spline;
 use super::class::{ClassTable, WINDOW_POINTS};
 use super::loop_rows::LOOP_WINDOW;
 use crate::mesh::SubdivMesh;
+use crate::osd::Refiner;
 use crate::patch::{Adjacency, PHANTOM, Patch, PatchError, PatchKind, Patches, RingClass, slot};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -11,7 +12,6 @@ use std::sync::Arc;
 
 /// The control net of a patch, as an evaluator wants it.
 #[derive(Debug, Clone)]
-#[expect(clippy::large_enum_variant, reason = "a net is a value on its way into a table; a box each would cost more")]
 pub enum Net {
     /// 16 uniform bicubic B-spline points, u fastest: point (i,j), i and j in -1..=2, at `4*(j+1) + (i+1)`; the corners
     /// of the patch are at 5, 6, 10, 9.
@@ -55,15 +55,21 @@ impl LimitSurface {
     /// # Errors
     /// The mesh is not valid, OpenSubdiv refuses it, or a face stays without a closed form.
     pub fn new(mesh: &SubdivMesh) -> Result<Self, PatchError> {
+        Ok(Self::with_refiner(mesh)?.0)
+    }
+
+    /// As [`new`](Self::new), with what makes refined points of control points.
+    pub(super) fn with_refiner(mesh: &SubdivMesh) -> Result<(Self, Refiner), PatchError> {
         let (patches, refiner) = Patches::new(mesh)?;
         let points = refiner.interpolate(&mesh.points)?;
         let tables = patches.classes().par_iter().map(|&class| ClassTable::new(class)).collect();
-        Ok(Self {
+        let surface = Self {
             patches: Arc::new(patches),
             tables: Arc::new(tables),
             points: Arc::new(points),
             diagonal: mesh.diagonal(),
-        })
+        };
+        Ok((surface, refiner))
     }
 
     /// All patches, in ptex order.
@@ -146,6 +152,11 @@ impl LimitSurface {
     /// The same patches over other refined points, those of all levels.
     pub(crate) fn with_refined(&self, points: Vec<DVec3>) -> Self {
         Self { points: Arc::new(points), ..self.clone() }
+    }
+
+    /// As [`with_refined`](Self::with_refined), of a mesh with another diagonal.
+    pub(super) fn moved(&self, points: Vec<DVec3>, diagonal: f64) -> Self {
+        Self { diagonal, ..self.with_refined(points) }
     }
 
     /// A surface with an error: point `point` of the support of a patch is moved, for this patch alone (strips along a

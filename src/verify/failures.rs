@@ -2,7 +2,7 @@
 
 use super::bin::{Failed, FailedPatches};
 use super::difference::Sample;
-use crate::mesh::SubdivMesh;
+use crate::mesh::{PtexParts, SubdivMesh};
 use crate::patch::PatchKind;
 use crate::stam::LimitSurface;
 use serde::Serialize;
@@ -38,6 +38,9 @@ pub struct FailedPatch {
     pub ptex_face: u32,
     /// Face of the control mesh, counted from 0.
     pub control_face: u32,
+    /// Path of the prim that the face is of; absent for meshes that are not from a stage.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub prim: Option<String>,
     /// Parameters of the ptex face that the patch spans.
     pub u: [f64; 2],
     /// Parameters of the ptex face that the patch spans.
@@ -61,7 +64,12 @@ pub(super) fn control_faces(mesh: &SubdivMesh) -> Vec<u32> {
 
 impl Failures {
     /// `None` where nothing failed.
-    pub(super) fn new(failed: &FailedPatches, surface: &LimitSurface, control_faces: &[u32]) -> Option<Self> {
+    pub(super) fn new(
+        failed: &FailedPatches,
+        surface: &LimitSurface,
+        control_faces: &[u32],
+        parts: &PtexParts<'_>,
+    ) -> Option<Self> {
         if failed.is_empty() {
             return None;
         }
@@ -79,6 +87,7 @@ impl Failures {
                 kind: found.map_or("hole", |patch| PatchKind::name(patch.kind)),
                 ptex_face,
                 control_face: control_faces[ptex_face as usize],
+                prim: parts.name(ptex_face).map(str::to_owned),
                 u: span(0),
                 v: span(1),
                 samples: failed.samples,
@@ -123,7 +132,9 @@ impl fmt::Display for FailedPatch {
             Some(patch) => write!(f, "patch {patch} ({kind}), ptex face {ptex_face}")?,
             None => write!(f, "no patch, ptex face {ptex_face}")?,
         }
-        write!(f, " (u {}..{}, v {}..{}), control face {control_face}: ", u[0], u[1], v[0], v[1])?;
+        write!(f, " (u {}..{}, v {}..{}), control face {control_face}", u[0], u[1], v[0], v[1])?;
+        self.prim.as_ref().map_or(Ok(()), |prim| write!(f, " of {prim}"))?;
+        write!(f, ": ")?;
         write!(f, "{}, worst ", counted(self.samples, "sample", "samples"))?;
         match self.times_allowed {
             Some(times) => write!(f, "{times:.1e} times what is allowed")?,

@@ -8,7 +8,7 @@ use super::difference::Sample;
 use super::failures::{Failures, control_faces};
 use super::histogram::Histogram;
 use super::key::Key;
-use crate::mesh::SubdivMesh;
+use crate::mesh::{PtexParts, SubdivMesh};
 use crate::patch::PatchKind;
 use crate::stam::LimitSurface;
 use serde::Serialize;
@@ -56,6 +56,9 @@ pub struct Tier {
     pub histogram: Histograms,
     /// The sample that uses most of its tolerance.
     pub worst: Option<Sample>,
+    /// Path of the prim that the worst sample lies on; absent for meshes that are not from a stage.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub prim: Option<String>,
     /// Error of the worst sample over what it may have; absent where the tier only reports, and where either is no number.
     pub times_allowed: Option<f64>,
     /// Command that shows the worst sample of a failed row by itself.
@@ -181,7 +184,7 @@ impl Report {
 }
 
 impl Tier {
-    fn new(key: Key, bin: Bin, failures: Option<Failures>) -> Self {
+    fn new(key: Key, bin: Bin, failures: Option<Failures>, parts: &PtexParts<'_>) -> Self {
         let percentile = |column: usize| {
             let mut values: Vec<f64> = bin.normals.iter().map(|normal| normal[column]).collect();
             let index = ((values.len() as f64 * PERCENTILE).ceil() as usize).saturating_sub(1);
@@ -207,6 +210,7 @@ impl Tier {
             tolerance_derivative: bin.derivative.allowed,
             histogram: Histograms { position: bin.position.histogram, normal_deg: bin.normal.histogram },
             worst: bin.worst.map(|worst| worst.sample),
+            prim: bin.worst.and_then(|worst| parts.name(worst.sample.face)).map(str::to_owned),
             times_allowed: bin.worst.filter(|worst| judged && worst.share.is_finite()).map(|worst| worst.share),
             reproduce: None,
             pass: bin.samples > 0 && bin.failed == 0 && percentile_holds,
@@ -222,13 +226,14 @@ impl MeshReport {
         }
         let (reference_not_asked, patches_unjudged) = (bins.not_asked, bins.unjudged);
         let control_faces = control_faces(mesh);
-        let failures = |failed: &FailedPatches| Failures::new(failed, surface, &control_faces);
+        let parts = mesh.ptex_parts();
+        let failures = |failed: &FailedPatches| Failures::new(failed, surface, &control_faces, &parts);
         let mut all_failed = FailedPatches::new();
         let (mut tiers, mut reference_known_wrong) = (Vec::new(), Vec::new());
         for (key, bin) in bins.bins {
             bin.failed_patches.iter().for_each(|(&patch, &failed)| note(&mut all_failed, patch, failed));
             let failures = failures(&bin.failed_patches);
-            let row = Tier::new(key, bin, failures);
+            let row = Tier::new(key, bin, failures, &parts);
             match key.known_wrong {
                 Some(reason) => reference_known_wrong.push(KnownWrong { row, reason }),
                 None => tiers.push(row),

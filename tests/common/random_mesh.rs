@@ -3,7 +3,7 @@
 #[path = "rng.rs"]
 mod rng;
 
-use catoptric::mesh::{Boundary, Corner, Crease, Creasing, Scheme, SubdivMesh};
+use catoptric::mesh::{Boundary, Corner, Crease, Creasing, SubdivMesh};
 use glam::DVec3;
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
@@ -183,7 +183,6 @@ pub fn mesh(seed: u64) -> SubdivMesh {
         holes,
         boundary: [Boundary::None, Boundary::EdgeOnly, Boundary::EdgeAndCorner, Boundary::EdgeAndCorner][rng.below(4)],
         creasing: if rng.chance(0.35) { Creasing::Chaikin } else { Creasing::Uniform },
-        scheme: Scheme::CatmullClark,
-        up: None,
+        ..SubdivMesh::default()
     }
 }

@@ -76,7 +76,7 @@ pub fn written(curves: &[Curve], camera: &Camera, format: LinesFormat, name: &st
 
 pub fn bytes(curves: &[Curve], camera: &Camera, format: LinesFormat) -> Vec<u8> {
     let mut out = Vec::new();
-    let lines = Lines { curves, field: "curve:x < y & \"z\"", camera, made_by: HOSTILE };
+    let lines = Lines { curves, field: "curve:x < y & \"z\"", camera, made_by: HOSTILE, parts: None };
     lines.write(format, &mut out).expect("memory takes it");
     out
 }

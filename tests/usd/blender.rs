@@ -1,13 +1,13 @@
-//! Suzanne and a cube as Blender writes them: usda, usdc, and OBJ, which has neither transforms nor creases.
+//! What Blender writes: Suzanne and a cube (beside the project), and a bowl of ours (`fixtures/make_blender.py`).
 
-use std::collections::HashMap;
-use std::fmt::Write;
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use catoptric::mesh::{self, SubdivMesh};
-use catoptric::stam::LimitSurface;
-use glam::{DMat3, DVec3};
+use glam::DVec3;
+
+use crate::fixtures::{
+    assert_attributes, assert_same_surface, distance, expected, folder, read_obj, read_prim, samples,
+};
 
 fn file(extension: &str) -> Option<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/meshes/blender");
@@ -18,94 +18,71 @@ fn file(extension: &str) -> Option<PathBuf> {
     path.exists().then_some(path)
 }
 
-/// The arrays of numbers of each Mesh prim, found in the text without a reader of USD.
-fn arrays(text: &str) -> Vec<HashMap<String, Vec<f64>>> {
-    let prims = text.split("def Mesh").skip(1);
-    let array = |line: &str| {
-        let (head, values) = line.split_once(" = [")?;
-        let numbers = values.split(['(', ')', ',', ']', ' ']).filter_map(|word| word.trim().parse().ok());
-        Some((head.split_whitespace().last()?.to_owned(), numbers.collect()))
-    };
-    prims.map(|prim| prim.lines().filter_map(array).collect()).collect()
-}
-
-/// The transforms of the two, as the text says them: translate, rotate about x, y and z, scale.
-fn world(prim: usize, p: DVec3) -> DVec3 {
-    if prim == 1 {
-        return p + DVec3::new(-4.0, 0.0, 0.0);
-    }
-    let [x, y, z] = [17.188736_f32, 11.459158, 28.647894].map(|degrees| f64::from(degrees).to_radians());
-    let turn = DMat3::from_rotation_z(z) * DMat3::from_rotation_y(y) * DMat3::from_rotation_x(x);
-    DVec3::new(1.0, 2.0, 3.0) + turn * (p * DVec3::new(1.0, 1.5, 1.0))
-}
-
-/// An OBJ with tags that says the same as the text.
-fn as_obj(prims: &[HashMap<String, Vec<f64>>]) -> String {
-    let mut obj = String::from("t interpolateboundary 1/0/0 1\n");
-    let mut first = 0;
-    for (index, prim) in prims.iter().enumerate() {
-        let points = prim["points"].chunks(3).map(|p| DVec3::new(p[0], p[1], p[2]));
-        // The numbers of the text are shortest decimals of 32 bits.
-        let points: Vec<DVec3> = points.map(|p| world(index, p.as_vec3().as_dvec3())).collect();
-        points.iter().for_each(|p| writeln!(obj, "v {:?} {:?} {:?}", p.x, p.y, p.z).expect("it fits"));
-        let mut rest = prim["faceVertexIndices"].as_slice();
-        for &size in &prim["faceVertexCounts"] {
-            let (face, more) = rest.split_at(size as usize);
-            let face: Vec<String> = face.iter().map(|v| (*v as usize + 1 + first).to_string()).collect();
-            writeln!(obj, "f {}", face.join(" ")).expect("it fits");
-            rest = more;
-        }
-        let pairs = prim.get("creaseIndices").map_or(&[][..], Vec::as_slice);
-        let sharpness = prim.get("creaseSharpnesses").map_or(&[][..], Vec::as_slice);
-        for (pair, sharpness) in pairs.chunks(2).zip(sharpness) {
-            let [a, b] = [pair[0], pair[1]].map(|v| v as usize + first);
-            writeln!(obj, "t crease 2/1/0 {a} {b} {sharpness}").expect("it fits");
-        }
-        let corners = prim.get("cornerIndices").map_or(&[][..], Vec::as_slice);
-        for (corner, sharpness) in corners.iter().zip(prim.get("cornerSharpnesses").map_or(&[][..], Vec::as_slice)) {
-            writeln!(obj, "t corner 1/1/0 {} {sharpness}", *corner as usize + first).expect("it fits");
-        }
-        first += points.len();
-    }
-    obj
-}
-
-fn samples(mesh: &SubdivMesh) -> Vec<DVec3> {
-    let surface = LimitSurface::new(mesh).expect("a surface");
-    let uvs = [[0.0, 0.0], [0.5, 0.5], [0.2, 0.7], [1.0, 0.4]];
-    let at = |ptex| uvs.map(|uv| surface.evaluate_ptex(ptex, uv).expect("a point").1.position);
-    (0..surface.ptex_count() as u32).flat_map(at).collect()
-}
-
-/// To the last bit. The two prims are the other way round in the binary file, in usd-core's view too.
-#[test]
-fn text_and_binary_give_the_same_surface() {
-    let (Some(text), Some(binary)) = (file("usda"), file("usdc")) else { return };
-    let [text, binary] = [text, binary].map(|path| mesh::read(&path).expect("a mesh"));
-    assert_eq!([text.up, binary.up], [Some(DVec3::Z); 2]);
-    assert!(!text.creases.is_empty());
-    let [text, binary] = [text, binary].map(|mesh| {
-        let mut bits: Vec<_> = samples(&mesh).iter().map(|p| p.to_array().map(f64::to_bits)).collect();
-        bits.sort_unstable();
-        bits
+/// To the last bit. The two prims may be the other way round in the binary file, in usd-core's view too.
+fn assert_text_is_binary([text, binary]: [&Path; 2]) -> [SubdivMesh; 2] {
+    let meshes = [text, binary].map(|path| mesh::read(path).expect("a mesh"));
+    let mut faces = meshes.each_ref().map(|mesh| {
+        let (parts, samples) = (mesh.ptex_parts(), samples(mesh));
+        let each = samples.len() / mesh.ptex_count();
+        let mut by_part: Vec<_> = parts
+            .iter()
+            .map(|(part, ptex)| {
+                let points = &samples[ptex.start as usize * each..ptex.end as usize * each];
+                let bits: Vec<_> = points.iter().map(|p| p.map(|p| p.to_array().map(f64::to_bits))).collect();
+                (part.name.clone(), bits)
+            })
+            .collect();
+        by_part.sort();
+        by_part
     });
+    let count: usize = faces[0].iter().map(|(_, bits)| bits.len()).sum();
+    assert!(count > 100, "only {count} samples");
+    let [text, binary] = &mut faces;
     assert!(text == binary, "the surfaces differ");
+    meshes
 }
 
-/// Within 1e-12 of an OBJ with tags that was written from the text by other means.
 #[test]
-fn the_surface_is_that_of_an_obj_with_tags() {
-    let Some(path) = file("usda") else { return };
-    let prims = arrays(&fs::read_to_string(&path).expect("a text"));
-    assert_eq!(prims.len(), 2);
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let obj = folder.path().join("suzanne_and_cube.obj");
-    fs::write(&obj, as_obj(&prims)).expect("a file");
-    let [ours, twin] = [&path, &obj].map(|path| samples(&mesh::read(path).expect("a mesh")));
-    assert_eq!(ours.len(), twin.len());
-    let worst = ours.iter().zip(&twin).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
-    println!("{} samples, at most {worst:.1e} apart", ours.len());
-    assert!(worst <= 1e-12, "{worst:e}");
+fn suzanne_is_the_same_from_text_and_binary() {
+    let (Some(text), Some(binary)) = (file("usda"), file("usdc")) else { return };
+    let meshes = assert_text_is_binary([&text, &binary]);
+    assert_eq!(meshes.each_ref().map(|mesh| mesh.up), [Some(DVec3::Z); 2]);
+    assert!(!meshes[0].creases.is_empty());
+}
+
+#[test]
+fn the_bowl_is_the_same_from_text_and_binary() {
+    let bowl = folder().join("blender_bowl.usda");
+    let [mesh, _] = assert_text_is_binary([&bowl, &bowl.with_extension("usdc")]);
+    assert_eq!((mesh.creases.len(), mesh.corners.len(), &mesh.holes[..]), (9, 4, &[11][..]));
+}
+
+/// Attributes are usd-core's, and the surface is that of an OBJ with tags made of them.
+fn assert_as_usd_core(path: &Path, name: &str, count: usize) {
+    let stage = expected(name);
+    assert_eq!(stage.times[0].meshes.len(), count);
+    for prim in &stage.times[0].meshes {
+        let ours = read_prim(path, &prim.prim);
+        assert_attributes(&ours, prim, &prim.prim);
+        let points = distance(&ours, &prim.world());
+        assert!(points <= 1e-14, "{}: {points:e}", prim.prim);
+        let surface = assert_same_surface(&ours, &read_obj(&prim.as_obj()));
+        println!("{}: points {points:.1e} of their size off, surface {surface:.1e} of its diagonal", prim.prim);
+    }
+}
+
+#[test]
+fn suzanne_is_what_usd_core_reads() {
+    for path in [file("usda"), file("usdc")].into_iter().flatten() {
+        assert_as_usd_core(&path, "suzanne_and_cube", 2);
+    }
+}
+
+#[test]
+fn the_bowl_is_what_usd_core_reads() {
+    for extension in ["usda", "usdc"] {
+        assert_as_usd_core(&folder().join("blender_bowl").with_extension(extension), "blender_bowl", 1);
+    }
 }
 
 /// Blender's own OBJ has the same points, in world space, to its six decimals, in Y up.

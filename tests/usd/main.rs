@@ -5,9 +5,12 @@ mod common;
 
 mod blender;
 mod corrupt;
+mod fixtures;
+mod prims;
 mod program;
 mod refused;
 mod schema;
+mod time;
 mod transforms;
 mod twins;
 

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::fs;
 
-use catoptric::mesh::{self, Boundary, Creasing, SubdivMesh};
+use catoptric::mesh::{self, Boundary, Creasing, Part, SubdivMesh};
 use glam::DVec3;
 
 use crate::{HEADER, common, converted, prim};
@@ -49,11 +49,18 @@ fn attributes(mesh: &SubdivMesh, chains: bool) -> String {
     text
 }
 
-/// As the file is to be read: points rounded, named after it, with the up axis that a stage has by default.
+/// As the file is to be read: points rounded, named after it, with the unit and the up axis that a stage has by default.
 fn expected(mesh: &SubdivMesh) -> SubdivMesh {
     let round = |p: &DVec3| p.as_vec3().as_dvec3();
-    let points = mesh.points.iter().map(round).collect();
-    SubdivMesh { name: "twin".to_owned(), points, up: Some(DVec3::Y), ..mesh.clone() }
+    let [faces, points] = [mesh.face_count(), mesh.points.len()].map(|count| 0..count as u32);
+    SubdivMesh {
+        name: "twin".to_owned(),
+        points: mesh.points.iter().map(round).collect(),
+        up: Some(DVec3::Y),
+        meters_per_unit: Some(0.01),
+        parts: vec![Part { name: "/m".to_owned(), faces, points, repeats: None }],
+        ..mesh.clone()
+    }
 }
 
 #[test]

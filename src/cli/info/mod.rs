@@ -5,15 +5,16 @@ mod adaptive;
 use adaptive::AdaptiveLevel;
 
 use super::args::InfoArgs;
-use super::{Failure, load, write_out};
+use super::{Failure, write_out};
 use crate::gpu;
-use crate::mesh::{Boundary, Creasing, SubdivMesh};
+use crate::mesh::{Boundary, Creasing, Part, SubdivMesh};
 use crate::osd::{INFINITE_SHARPNESS, Level, MAX_ISOLATION, Refiner, Rule};
 use crate::patch::PatchKind;
 use crate::stam::LimitSurface;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::Write;
+use std::ops::Range;
 
 /// Faces up to which all levels are listed without being asked for: some seconds.
 const MANY_FACES: usize = 20_000;
@@ -21,6 +22,13 @@ const MANY_FACES: usize = 20_000;
 #[derive(Debug, Default, Serialize)]
 struct Info {
     mesh: String,
+    /// Of a USD stage: metres of a unit, the axis that points up, and the meshes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    meters_per_unit: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    up: Option<[f64; 3]>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    prims: Vec<Prim>,
     vertices: usize,
     faces: usize,
     ptex_faces: usize,
@@ -61,8 +69,18 @@ struct Info {
     opensubdiv: Vec<AdaptiveLevel>,
 }
 
+/// A mesh of a stage.
+#[derive(Debug, Serialize)]
+struct Prim {
+    prim: String,
+    /// First and number of its faces, ptex faces and vertices among those of the whole.
+    faces: [u32; 2],
+    ptex_faces: [u32; 2],
+    vertices: [u32; 2],
+}
+
 pub(super) fn run(args: &InfoArgs) -> Result<(), Failure> {
-    let mesh = load(args.mesh.as_deref())?;
+    let mesh = args.scene.load(args.mesh.as_deref())?;
     let surface = LimitSurface::new(&mesh).map_err(|e| Failure::of(&mesh, e))?;
     let control = Refiner::uniform(&mesh, 1).and_then(|r| r.level(0)).map_err(|e| Failure::of(&mesh, e))?;
     let mut info = collect(&mesh, &surface, &control);
@@ -82,6 +100,9 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), Failure> {
 fn collect(mesh: &SubdivMesh, surface: &LimitSurface, control: &Level) -> Info {
     let mut info = Info {
         mesh: mesh.name.clone(),
+        meters_per_unit: mesh.meters_per_unit,
+        up: mesh.up.map(|up| up.to_array()),
+        prims: prims(mesh),
         vertices: mesh.points.len(),
         faces: mesh.face_count(),
         ptex_faces: surface.ptex_count(),
@@ -120,6 +141,17 @@ fn collect(mesh: &SubdivMesh, surface: &LimitSurface, control: &Level) -> Info {
     edges(control, &mut info);
     vertices(control, &mut info);
     info
+}
+
+fn prims(mesh: &SubdivMesh) -> Vec<Prim> {
+    let span = |range: &Range<u32>| [range.start, range.end - range.start];
+    let prim = |(part, ptex): (&Part, Range<u32>)| Prim {
+        prim: part.name.clone(),
+        faces: span(&part.faces),
+        ptex_faces: span(&ptex),
+        vertices: span(&part.points),
+    };
+    mesh.ptex_parts().iter().map(prim).collect()
 }
 
 fn edges(control: &Level, info: &mut Info) {
@@ -185,8 +217,15 @@ fn describe(info: &Info) -> String {
         "{} (boundary: {}, not manifold: {}, semi-sharp: {}, infinitely sharp: {})",
         info.edges, info.boundary_edges, info.non_manifold_edges, info.semi_sharp_edges, info.infinitely_sharp_edges
     );
-    let mut rows = vec![
-        ("mesh", info.mesh.clone()),
+    let mut rows = vec![("mesh", info.mesh.clone())];
+    for Prim { prim, faces, ptex_faces, .. } in &info.prims {
+        let [first, count] = ptex_faces;
+        let end = first + count.saturating_sub(1);
+        rows.push(("  prim", format!("{prim} (faces: {}; ptex faces: {first} to {end})", faces[1])));
+    }
+    rows.extend(info.meters_per_unit.map(|meters| ("unit", format!("{meters} m (the stage's; nothing is converted)"))));
+    rows.extend(info.up.map(|[_, y, _]| ("up", if y > 0.5 { "Y" } else { "Z" }.to_owned())));
+    rows.extend([
         ("control vertices", format!("{} (isolated: {})", info.vertices, info.isolated_vertices)),
         ("control faces", format!("{} (holes: {}; ptex faces: {})", info.faces, info.holes, info.ptex_faces)),
         ("faces by corners", list(&info.face_sizes)),
@@ -204,7 +243,7 @@ fn describe(info: &Info) -> String {
         ("patches by depth", list(&info.patch_depths)),
         ("classes", format!("{} ({} of matrices)", info.classes, mebibytes(info.class_table_bytes as f64))),
         ("GPU tables", mebibytes(info.gpu_table_bytes as f64)),
-    ];
+    ]);
     for (layout, &bytes) in &info.gpu_table_bytes_by_layout {
         rows.push(("  of layout", format!("{layout}: {}", mebibytes(bytes as f64))));
     }

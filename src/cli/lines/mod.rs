@@ -7,8 +7,9 @@ use super::account::Account;
 use super::args::size;
 use super::field::FieldArgs;
 use super::rig::{RigArgs, is_orthographic, positive};
+use super::scene::SceneArgs;
 use super::settings::{CommandLine, mesh_digest, method_name};
-use super::{Failure, load_quads, progress, write_out};
+use super::{Failure, progress, write_out};
 use crate::curves::{self, Curve};
 use crate::field::{Camera, Projection, Scout};
 use crate::output::{Lines, LinesFormat, MM_PER_PIXEL, check_writable, write_whole};
@@ -27,6 +28,8 @@ const LEAST_TOLERANCE: f64 = 1e-12;
 pub(super) struct LinesArgs {
     /// Control mesh (.obj, .usd, .usda, .usdc or .usdz)
     mesh: Option<PathBuf>,
+    #[command(flatten)]
+    pub(super) scene: SceneArgs,
     /// File to write: .svg (the picture), .dxf, .obj, .usda or .json (in space) [default: JSON on standard output]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -151,7 +154,7 @@ pub(super) fn run(args: &LinesArgs) -> Result<(), Failure> {
     args.output.iter().try_for_each(|path| files.write(path, "-o", "the curves"))?;
     args.rig.check_apart(&mut files)?;
     let bar = progress("tracing".to_owned());
-    let mesh = account.time("read", || load_quads(args.mesh.as_deref(), "lines"))?;
+    let mesh = account.time("read", || args.scene.load_quads(args.mesh.as_deref(), "lines"))?;
     let surface =
         account.time("patches and classes", || LimitSurface::new(&mesh)).map_err(|e| Failure::of(&mesh, e))?;
     let scout = account.time("fit", || Scout::new(&surface)).ok_or_else(|| {
@@ -171,6 +174,7 @@ pub(super) fn run(args: &LinesArgs) -> Result<(), Failure> {
     let family = account.time("lights", || args.family.family(&scout, &camera, &mut field));
     fitted.light.spacing = field.light.spacing;
     let mut command = CommandLine::new("lines", args.mesh.as_deref());
+    args.scene.record(&mut command);
     command.camera(&camera);
     command.field(&fitted);
     family.record(&mut command);
@@ -185,7 +189,8 @@ pub(super) fn run(args: &LinesArgs) -> Result<(), Failure> {
         curves = account.time("hidden lines", || curves::visible(&surface, &camera, &curves));
     }
     let name = method_name(&field.method);
-    let lines = Lines { curves: &curves, field: &name, camera: &camera, made_by: &made_by };
+    let parts = mesh.ptex_parts();
+    let lines = Lines { curves: &curves, field: &name, camera: &camera, made_by: &made_by, parts: Some(&parts) };
     let format = args.paper.format(extension, &camera);
     account.time("write", || -> Result<(), Failure> {
         match &args.output {

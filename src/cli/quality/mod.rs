@@ -8,11 +8,12 @@ use super::account::Account;
 use super::args::size;
 use super::field::{ColourArgs, FieldArgs, PatternArgs};
 use super::rig::RigArgs;
+use super::scene::SceneArgs;
 use super::settings::{CommandLine, mesh_digest};
-use super::{Failure, load_quads, progress, write_out};
+use super::{Failure, progress, write_out};
 use crate::field::{Field, Pattern, Scout};
 use crate::gpu::View;
-use crate::mesh::SubdivMesh;
+use crate::mesh::{PtexParts, SubdivMesh};
 use crate::output::check_writable;
 use crate::quality::{FeatureKind, Kind, Limits, Quality, Ranked, Reading};
 use crate::rig::{CameraRig, FittedRig, PatternName, PatternRig, Rig};
@@ -25,6 +26,8 @@ use std::path::PathBuf;
 pub(super) struct QualityArgs {
     /// Control mesh (.obj, .usd, .usda, .usdc or .usdz)
     mesh: Option<PathBuf>,
+    #[command(flatten)]
+    pub(super) scene: SceneArgs,
     /// Picture to write (.png): the field, creases and vertices coloured by how far they exceed their limits, the worst numbered
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -108,6 +111,7 @@ fn unit(text: &str) -> Result<f64, String> {
 /// A surface, judged.
 struct Verdict<'a> {
     mesh: &'a SubdivMesh,
+    parts: PtexParts<'a>,
     field: &'a Field,
     quality: &'a Quality,
     /// The worst first; those that are ignored too.
@@ -164,7 +168,7 @@ pub(super) fn run(args: &QualityArgs) -> Result<(), Failure> {
     args.check_files(&rig)?;
     let pattern = rig.pattern.read(&rig.method()).map_err(Failure::Bad)?;
     let bar = progress("measuring".to_owned());
-    let mesh = account.time("read", || load_quads(args.mesh.as_deref(), "quality"))?;
+    let mesh = account.time("read", || args.scene.load_quads(args.mesh.as_deref(), "quality"))?;
     let surface =
         account.time("patches and classes", || LimitSurface::new(&mesh)).map_err(|e| Failure::of(&mesh, e))?;
     let scout = account.time("fit", || Scout::new(&surface)).ok_or_else(|| {
@@ -186,6 +190,7 @@ pub(super) fn run(args: &QualityArgs) -> Result<(), Failure> {
     ignored.dedup();
     let mut verdict = Verdict {
         mesh: &mesh,
+        parts: mesh.ptex_parts(),
         field: &field,
         quality: &quality,
         ranked: quality.ranked(&limits),
@@ -247,6 +252,7 @@ impl QualityArgs {
     /// The command that makes the same files again.
     fn made_by(&self, verdict: &Verdict<'_>, rig: &FittedRig, (pattern, name): (&Pattern, &PatternName)) -> String {
         let mut command = CommandLine::new("quality", self.mesh.as_deref());
+        self.scene.record(&mut command);
         command.camera(&rig.camera);
         command.field(rig);
         command.pattern(pattern, name);

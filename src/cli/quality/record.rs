@@ -78,6 +78,10 @@ fn place(verdict: &Verdict<'_>, rank: Option<usize>, ranked: &Ranked<'_>) -> Val
     value["at"] = json!(ranked.spot().map(|(place, position)| {
         json!({ "face": place.face, "u": place.u, "v": place.v, "position": position.to_array() })
     }));
+    let prim = ranked.spot().and_then(|(place, _)| verdict.parts.name(place.face));
+    if let Some(prim) = prim {
+        value["prim"] = json!(prim);
+    }
     value
 }
 

@@ -118,6 +118,14 @@ fn aligned(rows: &[Row]) -> String {
     out
 }
 
+/// The name, and the prim that the place lies on.
+fn of_prim(name: String, verdict: &Verdict<'_>, ranked: &Ranked<'_>) -> String {
+    match ranked.spot().and_then(|(place, _)| verdict.parts.name(place.face)) {
+        Some(prim) => format!("{name} of {prim}"),
+        None => name,
+    }
+}
+
 fn row(verdict: &Verdict<'_>, rank: usize, ranked: &Ranked<'_>, diagonal: f64) -> Row {
     let none = || "-".to_owned();
     let (place, position) = match ranked.spot() {
@@ -140,7 +148,7 @@ fn row(verdict: &Verdict<'_>, rank: usize, ranked: &Ranked<'_>, diagonal: f64) -
     [
         rank.to_string(),
         kind(ranked),
-        name(&ranked.subject),
+        of_prim(name(&ranked.subject), verdict, ranked),
         place,
         position,
         figure(gap),

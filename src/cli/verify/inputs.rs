@@ -1,7 +1,7 @@
 //! Which meshes to verify: files, folders and patterns.
 
-use super::super::{Failure, load};
-use crate::mesh::{self, MeshError, SubdivMesh};
+use super::super::{Failure, scene::SceneArgs};
+use crate::mesh::{self, SubdivMesh};
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
@@ -13,17 +13,19 @@ pub(super) struct Input {
     /// What was named by itself is read at once, so that a typing error costs no minutes. What was found in a folder or by a
     /// pattern is read when its turn comes, and may be refused.
     named: Option<SubdivMesh>,
+    scene: SceneArgs,
     /// Why the folder that should have it cannot be read.
     unreadable: Option<String>,
 }
 
 impl Input {
-    fn named(path: Option<&Path>) -> Result<Self, MeshError> {
-        Ok(Self { path: path.map(Path::to_owned), named: Some(load(path)?), unreadable: None })
+    fn named(path: Option<&Path>, scene: &SceneArgs) -> Result<Self, Failure> {
+        let named = Some(scene.load(path)?);
+        Ok(Self { path: path.map(Path::to_owned), named, scene: scene.clone(), unreadable: None })
     }
 
     fn found(path: PathBuf, unreadable: Option<String>) -> Self {
-        Self { path: Some(path), named: None, unreadable }
+        Self { path: Some(path), named: None, scene: SceneArgs::default(), unreadable }
     }
 
     /// Whether the command line names this very mesh, so that its refusal ends the run.
@@ -47,7 +49,7 @@ impl Input {
         match (&self.named, &self.unreadable) {
             (Some(mesh), _) => Ok(mesh.clone()),
             (_, Some(reason)) => Err(reason.clone()),
-            _ => load(self.path.as_deref()).map_err(|error| error.to_string()),
+            _ => self.scene.read(self.path.as_deref()),
         }
     }
 }
@@ -56,23 +58,23 @@ impl Input {
 ///
 /// # Errors
 /// A mesh that is named by itself is refused; a folder or pattern has no mesh.
-pub(super) fn find(words: &[PathBuf]) -> Result<Vec<Input>, Failure> {
+pub(super) fn find(words: &[PathBuf], scene: &SceneArgs) -> Result<Vec<Input>, Failure> {
     if words.is_empty() {
-        return Ok(vec![Input::named(None)?]);
+        return Ok(vec![Input::named(None, scene)?]);
     }
     let mut inputs = Vec::new();
     for word in words {
         let found = match pattern(word) {
             Some(pattern) => matches(word, pattern)?,
             None if word.is_dir() => walk(word),
-            None => vec![Input::named(Some(word))?],
+            None => vec![Input::named(Some(word), scene)?],
         };
         if found.is_empty() {
             let what = if word.is_dir() { "the folder has no mesh" } else { "no mesh matches" };
             let extensions = mesh::EXTENSIONS.map(|extension| format!(".{extension}")).join(", ");
             return Err(Failure::Bad(format!("{}: {what} ({extensions}); check the path", word.display())));
         }
-        inputs.extend(found);
+        inputs.extend(found.into_iter().map(|input| Input { scene: scene.clone(), ..input }));
     }
     let mut seen = HashSet::new();
     inputs.retain(|input| seen.insert(input.path.clone()));

@@ -26,7 +26,7 @@ pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
         check_writable(path)?;
     }
     let baseline = args.baseline.as_deref().map(|path| read_baseline(path, args.size)).transpose()?;
-    let inputs = inputs::find(&args.meshes)?;
+    let inputs = inputs::find(&args.meshes, &args.scene)?;
     if args.conformance.asked() {
         return conformance::run(args, &inputs);
     }
@@ -136,7 +136,7 @@ impl Show<'_> {
     /// The command that shows a single sample, up to the mesh.
     fn flags(&self) -> String {
         let plant = self.args.plant.map(|plant| format!(" --plant {plant}")).unwrap_or_default();
-        format!("catoptric verify{plant}")
+        format!("catoptric verify{}{plant}", self.args.scene.flags())
     }
 
     /// All rows of a single mesh; of many a line each, and the rows that failed.

@@ -122,12 +122,10 @@ pub(super) fn newton(lens: &Lens, piece: &Piece, chart: &ChartFrame, p: [f64; 2]
         };
         if length(uv, next) < SETTLED {
             let depth = jet.value[2] + (next[0] - uv[0]) * jet.du[2] + (next[1] - uv[1]) * jet.dv[2];
-            let hit = Hit { uv: piece.to_patch(next), depth };
-            // Half of what u + v is too much, taken from each.
-            let excess = piece.clip.map_or(0.0, |clip| clip.excess(hit.uv).max(0.0));
-            let back = [0, 1].map(|k| next[k] - 0.5 * excess / piece.size[k].abs());
+            // What lies beyond the diagonal of a triangle goes back to it.
+            let back = piece.clip.map_or(next, |clip| clip.brought_back(next, piece));
             let is_inside = length(next, target) <= BAND && length(next, back) <= BAND;
-            return (is_inside && depth >= lens.near).then_some(hit);
+            return (is_inside && depth >= lens.near).then(|| Hit { uv: piece.to_patch(back), depth });
         }
         uv = next;
     }

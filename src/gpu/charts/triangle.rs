@@ -23,6 +23,15 @@ impl Clip {
         if self.turned { self.limit - (u + v) } else { u + v - self.limit }
     }
 
+    /// The piece's own parameters, brought back to the diagonal from beyond: half of what u + v is too much taken from each, but
+    /// none is left below zero.
+    pub fn brought_back(&self, own: [f64; 2], piece: &Piece) -> [f64; 2] {
+        let excess = self.excess(piece.to_patch(own)).max(0.0);
+        let size = piece.size.map(f64::abs);
+        let from_v = (excess - (0.5 * excess).min(own[0] * size[0])).min(own[1] * size[1]);
+        [own[0] - (excess - from_v) / size[0], own[1] - from_v / size[1]]
+    }
+
     /// Whether a square lies beyond: its first corner is the one that is farthest inside.
     pub fn is_beyond(&self, origin: [f64; 2]) -> bool {
         self.excess(origin) >= 0.0

@@ -2,12 +2,24 @@
 
 use glam::{DMat4, DVec3};
 
+use super::instances;
 use super::value::Node;
 use crate::mesh::validate::{Source, check};
 use crate::mesh::{Boundary, Corner, Crease, MeshError, Scheme, SubdivMesh};
 
-/// Reads and validates the mesh, with its points where `world` puts them.
-pub(super) fn read(node: &Node<'_>, world: DMat4) -> Result<SubdivMesh, MeshError> {
+/// Whether the prim has no faces at all.
+pub(super) fn is_empty(node: &Node<'_>) -> Result<bool, MeshError> {
+    let none = |name| node.indices(name).map(|values| values.is_none_or(|values| values.is_empty()));
+    Ok(none("faceVertexCounts")? && none("faceVertexIndices")?)
+}
+
+/// Whether a skeleton or blend shapes would move the points (`UsdSkelBindingAPI`).
+pub(super) fn is_posed(node: &Node<'_>) -> Result<bool, MeshError> {
+    Ok(node.has_value("primvars:skel:jointIndices")? || node.has_value("skel:blendShapes")?)
+}
+
+/// Reads and validates the mesh, with its points where `world` puts them; the other result is its digest before that.
+pub(super) fn read(node: &Node<'_>, world: DMat4) -> Result<(SubdivMesh, u64), MeshError> {
     let points = node.required("points", node.points("points")?)?;
     let face_sizes = node.required("faceVertexCounts", node.indices("faceVertexCounts")?)?;
     let face_vertices = node.required("faceVertexIndices", node.indices("faceVertexIndices")?)?;
@@ -15,7 +27,7 @@ pub(super) fn read(node: &Node<'_>, world: DMat4) -> Result<SubdivMesh, MeshErro
     let place = |point: DVec3| if point.is_finite() { world.project_point3(point) } else { point };
     let mut mesh = SubdivMesh {
         name: node.source.to_owned(),
-        points: points.into_iter().map(place).collect(),
+        points: points.iter().copied().map(place).collect(),
         face_sizes,
         face_vertices,
         creases: creases(node)?,
@@ -31,7 +43,8 @@ pub(super) fn read(node: &Node<'_>, world: DMat4) -> Result<SubdivMesh, MeshErro
     if is_left_handed(node)? != (world.determinant() < 0.0) {
         turn(&mut mesh);
     }
-    Ok(mesh)
+    let digest = instances::digest(&mesh, &points);
+    Ok((mesh, digest))
 }
 
 fn scheme(node: &Node<'_>) -> Result<Scheme, MeshError> {

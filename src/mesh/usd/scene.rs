@@ -2,45 +2,70 @@
 
 use std::collections::HashMap;
 
+use glam::DMat4;
+
+use super::instances::{Extent, Originals};
 use crate::mesh::error::{Place, Spot};
 use crate::mesh::validate::check_counts;
-use crate::mesh::{Boundary, Corner, Crease, MeshError, SubdivMesh};
+use crate::mesh::{Boundary, Corner, Crease, MeshError, Part, SubdivMesh};
 
 /// Sharpness from which a vertex never decays.
 const INFINITE: f32 = 10.0;
 
-/// One mesh of all, in their order; `file` names it in messages.
+/// One mesh of all, in their order, each under the path of its prim; `file` names it in messages.
 ///
 /// `EdgeAndCorner` is `EdgeOnly` with the vertices of a single face infinitely sharp, so meshes of both kinds become
 /// one of `EdgeOnly`; meshes without a boundary go with either.
 ///
 /// # Errors
-/// Meshes of two schemes, a mesh whose boundary is not interpolated beside one whose is, and more points or faces than OpenSubdiv counts.
-pub(super) fn join(meshes: Vec<SubdivMesh>, file: &str, name: &str) -> Result<SubdivMesh, MeshError> {
+/// Meshes of two schemes, a mesh whose boundary is not interpolated beside one whose is, and more points or faces than
+/// OpenSubdiv counts.
+pub(super) fn join(meshes: Vec<Placed>, file: &str, name: &str) -> Result<SubdivMesh, MeshError> {
     let mut scene = SubdivMesh { name: name.to_owned(), ..SubdivMesh::default() };
     scene.boundary = match &meshes[..] {
-        [one] => one.boundary,
+        [one] => one.mesh.boundary,
         _ => common_rule(&meshes)?,
     };
-    scene.scheme = meshes.first().map_or_else(Default::default, |mesh| mesh.scheme);
-    if let Some(mesh) = meshes.iter().find(|mesh| mesh.scheme != scene.scheme) {
+    scene.scheme = meshes.first().map_or_else(Default::default, |first| first.mesh.scheme);
+    if let Some(Placed { mesh, .. }) = meshes.iter().find(|placed| placed.mesh.scheme != scene.scheme) {
         let (first, found) = (scene.scheme.name(), mesh.scheme.name());
         return Err(MeshError::SchemeMixed { at: Place::with(&mesh.name, Spot::Whole), first, found });
     }
-    for mut mesh in meshes {
+    let mut originals = Originals::default();
+    for Placed { name, mut mesh, world, digest } in meshes {
+        let before = Extent::of(&scene);
         if mesh.boundary == Boundary::EdgeAndCorner && scene.boundary == Boundary::EdgeOnly {
             sharpen_lone_vertices(&mut mesh);
         }
         append(&mut scene, mesh);
         // Indices fit as long as their number does.
         check_counts(&scene, &Place::with(file, Spot::Whole))?;
+        let repeats = originals.find(&scene, &before, digest, world);
+        let [faces, points] = [scene.face_count(), scene.points.len()].map(|count| count as u32);
+        scene.parts.push(Part {
+            name,
+            faces: before.faces as u32..faces,
+            points: before.points as u32..points,
+            repeats,
+        });
     }
     Ok(scene)
 }
 
-fn common_rule(meshes: &[SubdivMesh]) -> Result<Boundary, MeshError> {
+/// A mesh of the stage, with its points in world space.
+pub(super) struct Placed {
+    /// Path of its prim.
+    pub name: String,
+    pub mesh: SubdivMesh,
+    /// What brought its points there.
+    pub world: DMat4,
+    /// Digest of all that it is before that ([`digest`](super::instances::digest)).
+    pub digest: u64,
+}
+
+fn common_rule(meshes: &[Placed]) -> Result<Boundary, MeshError> {
     let mut rules: Vec<(&SubdivMesh, Boundary)> = Vec::new();
-    for mesh in meshes {
+    for Placed { mesh, .. } in meshes {
         if rules.iter().all(|&(_, rule)| rule != mesh.boundary) && has_boundary(mesh) {
             rules.push((mesh, mesh.boundary));
         }

@@ -11,6 +11,8 @@ use crate::mesh::error::{Place, Spot, quote};
 pub(super) struct Node<'a> {
     pub(super) prim: &'a Prim,
     pub(super) source: &'a str,
+    /// When; `None` is the default time.
+    pub(super) time: Option<f64>,
 }
 
 impl Node<'_> {
@@ -18,18 +20,27 @@ impl Node<'_> {
         Place::with(self.source, Spot::Whole)
     }
 
-    /// The default value of an attribute, and where there is only a first time sample, that.
+    /// The value of an attribute at the time; at the default time, where there are only time samples, the first of them.
     pub(super) fn value(&self, name: &str) -> Result<Option<Value>, MeshError> {
         let attribute = self.prim.attribute(name);
-        let value = match attribute.get::<Value>() {
-            Ok(None) => attribute.get_at::<Value>(TimeCode::EARLIEST),
-            value => value,
+        let value = match self.time {
+            Some(time) => attribute.get_at::<Value>(TimeCode::new(time)),
+            None => match attribute.get::<Value>() {
+                Ok(None) => attribute.get_at::<Value>(TimeCode::EARLIEST),
+                value => value,
+            },
         };
-        let value = value.map_err(|error| MeshError::UsdUnreadable {
-            at: self.place(),
-            reason: format!("{name}: {}", one_line(&error)),
-        })?;
+        let value = value.map_err(|error| self.unreadable(name, &error))?;
         Ok(value.filter(|value| !matches!(value, Value::None | Value::ValueBlock)))
+    }
+
+    /// Whether an attribute has a value or time samples, whatever they are.
+    pub(super) fn has_value(&self, name: &str) -> Result<bool, MeshError> {
+        self.prim.attribute(name).has_authored_value().map_err(|error| self.unreadable(name, &error))
+    }
+
+    fn unreadable(&self, name: &str, error: &dyn std::error::Error) -> MeshError {
+        MeshError::UsdUnreadable { at: self.place(), reason: format!("{name}: {}", one_line(error)) }
     }
 
     /// An attribute that a mesh cannot be without.

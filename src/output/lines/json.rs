@@ -3,6 +3,7 @@
 //! {"field": "reflection", "made_by": "...", "curves": [
 //!   {"value": 0.5, "light": 1, "closed": false, "points": [[x, y, z], ...], "params": [[face, u, v], ...]}, ...]}
 //! ```
+//! Curves on meshes of a USD stage have a `prim` each, its path.
 
 use super::Lines;
 use crate::curves::Curve;
@@ -17,6 +18,8 @@ struct Record<'a> {
     value: f64,
     light: i32,
     closed: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    prim: Option<&'a str>,
     #[serde(serialize_with = "points")]
     points: &'a Curve,
     #[serde(serialize_with = "params")]
@@ -44,7 +47,8 @@ pub(super) fn write(lines: &Lines<'_>, out: &mut dyn Write) -> Result<()> {
     write!(out, "{{\"field\":{field},\n\"made_by\":{made_by},\n\"curves\":[")?;
     let text = |curve: &Curve| {
         let Curve { value, light, closed, .. } = *curve;
-        serde_json::to_vec(&Record { value, light, closed, points: curve, params: curve })
+        let prim = lines.parts.zip(curve.places.first()).and_then(|(parts, place)| parts.name(place.face));
+        serde_json::to_vec(&Record { value, light, closed, prim, points: curve, params: curve })
     };
     for (i, some) in lines.curves.chunks(AT_ONCE).enumerate() {
         let texts: Vec<_> = some.par_iter().map(text).collect();

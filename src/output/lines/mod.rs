@@ -14,6 +14,7 @@ pub use picture::{Drawn, in_picture};
 
 use crate::curves::Curve;
 use crate::field::Camera;
+use crate::mesh::PtexParts;
 use std::io::{Result, Write};
 
 /// Millimetres that a pixel takes on paper: CSS has 96 of them in an inch.
@@ -30,6 +31,8 @@ pub struct Lines<'a> {
     pub camera: &'a Camera,
     /// How the file was made.
     pub made_by: &'a str,
+    /// Whose faces the curves lie on, if they have names.
+    pub parts: Option<&'a PtexParts<'a>>,
 }
 
 /// How curves are written.
