@@ -4,8 +4,7 @@ use super::box_spline;
 use super::class::{ClassTable, WINDOW_POINTS};
 use super::loop_rows::LOOP_WINDOW;
 use crate::mesh::SubdivMesh;
-use crate::osd::Refiner;
-use crate::patch::{Adjacency, PHANTOM, Patch, PatchError, PatchKind, Patches, RingClass, slot};
+use crate::patch::{Adjacency, PHANTOM, Patch, PatchError, PatchKind, Patches, Refinement, RingClass, slot};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -55,21 +54,25 @@ impl LimitSurface {
     /// # Errors
     /// The mesh is not valid, OpenSubdiv refuses it, or a face stays without a closed form.
     pub fn new(mesh: &SubdivMesh) -> Result<Self, PatchError> {
-        Ok(Self::with_refiner(mesh)?.0)
+        let (patches, points) = Patches::with_points(mesh)?;
+        Ok(Self::of(patches, points, mesh))
     }
 
     /// As [`new`](Self::new), with what makes refined points of control points.
-    pub(super) fn with_refiner(mesh: &SubdivMesh) -> Result<(Self, Refiner), PatchError> {
-        let (patches, refiner) = Patches::new(mesh)?;
-        let points = refiner.interpolate(&mesh.points)?;
+    pub(super) fn with_refinement(mesh: &SubdivMesh) -> Result<(Self, Refinement), PatchError> {
+        let (patches, mut refinement) = Patches::new(mesh)?;
+        let points = refinement.interpolate(&mesh.points)?;
+        Ok((Self::of(patches, points, mesh), refinement))
+    }
+
+    fn of(patches: Patches, points: Vec<DVec3>, mesh: &SubdivMesh) -> Self {
         let tables = patches.classes().par_iter().map(|&class| ClassTable::new(class)).collect();
-        let surface = Self {
+        Self {
             patches: Arc::new(patches),
             tables: Arc::new(tables),
             points: Arc::new(points),
             diagonal: mesh.diagonal(),
-        };
-        Ok((surface, refiner))
+        }
     }
 
     /// All patches, in ptex order.
@@ -105,10 +108,12 @@ impl LimitSurface {
     /// A box that encloses the limit surface: that of the refined points that control it (all rules are convex
     /// combinations). `None` for a surface without patches.
     pub fn bounds(&self) -> Option<[DVec3; 2]> {
-        let used = (0..self.patches().len()).flat_map(|patch| self.patches.support(patch));
-        used.filter(|&&v| v != PHANTOM).map(|&v| self.points[v as usize]).fold(None, |bounds: Option<[DVec3; 2]>, p| {
-            Some(bounds.map_or([p, p], |[low, high]| [low.min(p), high.max(p)]))
-        })
+        let both = |[low, high]: [DVec3; 2], [a, b]: [DVec3; 2]| [low.min(a), high.max(b)];
+        let of = |vertices: &[u32]| {
+            let used = vertices.iter().filter(|&&vertex| vertex != PHANTOM);
+            used.map(|&vertex| [self.points[vertex as usize]; 2]).reduce(both)
+        };
+        self.patches.supports().par_chunks(1 << 16).filter_map(of).reduce_with(both)
     }
 
     /// The patch at (u,v), each 0 to 1, of a ptex face, and the patch-local parameters; `None` in a hole.
@@ -127,6 +132,13 @@ impl LimitSurface {
     /// The kind of a patch.
     pub fn kind(&self, patch: usize) -> PatchKind {
         self.patches()[patch].kind
+    }
+
+    /// Some control point of a patch, phantom points left out.
+    pub(crate) fn control_point(&self, patch: usize) -> DVec3 {
+        let mut support = self.patches.support(patch).iter();
+        let vertex = support.find(|&&vertex| vertex != PHANTOM).expect("corners are control points");
+        self.points[*vertex as usize]
     }
 
     /// Refined vertices that control a patch, [`PHANTOM`] where there is none.

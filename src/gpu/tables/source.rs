@@ -93,6 +93,17 @@ pub trait PatchSource: Debug + Send + Sync {
     fn class(&self, patch: usize) -> Option<usize>;
     /// A patch with so many levels, if it has as many.
     fn patch(&self, patch: usize, levels: usize) -> PatchNet;
+    /// Some point near a patch, and its cell: refinement levels and transition bits, as in [`PatchNet`].
+    fn place(&self, patch: usize) -> (DVec3, ([u8; 2], u8)) {
+        let PatchNet { levels, transition, net } = self.patch(patch, 1);
+        let point = match net {
+            TableNet::Regular(points) => points[5],
+            TableNet::Irregular { limit, .. } | TableNet::IrregularTriangle { limit, .. } => limit,
+            TableNet::Gregory(Gregory { bezier, .. }) => bezier[5],
+            TableNet::Triangle(points) => points[4],
+        };
+        (point, (levels, transition))
+    }
     /// The nets of a patch.
     fn nets(&self, patch: usize) -> PatchNets<'_>;
     /// Ptex face and its parameters at those of a patch.
@@ -138,6 +149,11 @@ impl PatchSource for LimitSurface {
             Net::Irregular { limit, lambda, levels } => TableNet::Irregular { limit, normal: normal(), lambda, levels },
         };
         PatchNet { levels: record.levels(), transition: record.transition, net }
+    }
+
+    fn place(&self, patch: usize) -> (DVec3, ([u8; 2], u8)) {
+        let record = self.patches()[patch];
+        (self.control_point(patch), (record.levels(), record.transition))
     }
 
     fn nets(&self, patch: usize) -> PatchNets<'_> {
