@@ -352,6 +352,36 @@ fn pictures_have_their_size_and_repeat_bit_by_bit() {
     }
 }
 
+/// What takes more memory than it may is refused before it is taken: files, refinement, tables.
+#[test]
+fn memory_is_forecast() {
+    let folder = Folder::new();
+    // Random sharpness along all edges: refined to level 10 everywhere along them.
+    let side = 60;
+    let mut text = String::new();
+    for k in 0..=side {
+        (0..=side).for_each(|i| text += &format!("v {i} {k} {}\n", (i * k) % 7));
+    }
+    let vertex = |i: usize, j: usize| j * (side + 1) + i;
+    for (i, j) in (0..side * side).map(|k| (k % side, k / side)) {
+        let corners = [vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1)].map(|v| v + 1);
+        text += &format!("f {} {} {} {}\n", corners[0], corners[1], corners[2], corners[3]);
+        for (k, end) in [vertex(i + 1, j), vertex(i, j + 1)].into_iter().enumerate() {
+            let sharpness = 9.0 + ((i * 31 + j * 17 + k * 7) % 90) as f64 / 100.0;
+            text += &format!("t crease 2/1/0 {} {end} {sharpness}\n", vertex(i, j));
+        }
+    }
+    folder.file("sharp.obj", &text);
+    for (limit, what) in [("100KiB", "to be read"), ("200MiB", "to be refined"), ("0", "nothing fits")] {
+        let message = folder.refused(&["info", "sharp.obj", "--memory-limit", limit]);
+        assert!(message.contains(what), "{limit}: {message}");
+    }
+    let message = folder.refused(&["render", "--memory-limit", "300MiB"]);
+    assert!(message.contains("sample: to be drawn"), "{message}");
+    folder.refused(&["info", "--memory-limit", "much"]);
+    assert!(folder.run(["info", "--memory-limit", "1GiB"]).status.success());
+}
+
 /// The certificates on standard error and in JSON, and as colours.
 #[test]
 fn certificates_are_told() {

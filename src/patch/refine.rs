@@ -16,7 +16,7 @@ pub(super) const RINGS_STAND_ALONE: u32 = 2;
 
 /// Levels after which no finite sharpness is left: it decreases by one a level (Chaikin averages first, which lowers the
 /// largest).
-fn isolation(mesh: &SubdivMesh) -> u32 {
+pub(super) fn isolation(mesh: &SubdivMesh) -> u32 {
     let sharpness = mesh.creases.iter().map(|c| c.sharpness).chain(mesh.corners.iter().map(|c| c.sharpness));
     let finite = sharpness.filter(|&s| s < INFINITE_SHARPNESS).fold(0.0, f32::max);
     (finite.ceil() as u32).clamp(RINGS_STAND_ALONE, MAX_ISOLATION)

@@ -237,6 +237,15 @@ impl LimitSurface {
         (points, limit)
     }
 
+    /// Points of the levels of an irregular patch whose class keeps its matrices, each by its level and its number there, as in
+    /// [`ClassTable::weights`]; none of others.
+    pub(crate) fn window_points(&self, patch: usize, picked: &[[usize; 2]]) -> Vec<DVec3> {
+        let Some(class) = self.class(patch) else { return Vec::new() };
+        let table = &self.tables[class];
+        let (points, _) = self.irregular_net(patch, table);
+        picked.iter().filter_map(|&[level, k]| Some(combine(table.weights(level, k)?, &points))).collect()
+    }
+
     /// Control net of a patch; `levels` (1 to [`LEVELS`](super::LEVELS)) levels of it where it is irregular.
     pub fn net(&self, patch: usize, levels: usize) -> Net {
         let triangles = self.has_triangles();

@@ -72,11 +72,6 @@ impl Basis {
         Some(Basis { picked, weights: coordinates.concat() })
     }
 
-    /// Deepest level that a point is picked from.
-    pub fn deepest(&self) -> usize {
-        self.picked.iter().map(|&[level, _]| level).max().unwrap_or(1)
-    }
-
     /// Groups of four points that the picked ones fill.
     pub fn groups(&self) -> usize {
         self.picked.len().div_ceil(4)
@@ -154,7 +149,7 @@ mod tests {
                 println!(
                     "{class:?} from {first}: {} of {size} points, deepest {}, weights {entries:.1}, left out {:e}",
                     basis.picked.len(),
-                    basis.deepest(),
+                    basis.picked.iter().map(|&[level, _]| level).max().unwrap_or(0),
                     worst / norm,
                 );
                 assert!(worst <= 2.0 * TOLERANCE * norm, "{class:?}: {worst:e} of {norm}");

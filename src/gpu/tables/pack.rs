@@ -78,8 +78,9 @@ pub(super) fn pack<S: PatchSource + ?Sized>(
         let place = |(patch, first, slot): (usize, usize, &mut [[f32; 4]])| {
             let class = source.class(patch);
             let basis = class.and_then(|class| plan.basis(class));
-            let levels = basis.map_or(TABLE_LEVELS, |basis| basis.deepest().max(plan.expanded));
-            let mut placed = place(source.patch(patch, levels), plan.expanded, basis, slot, unit);
+            let levels = if basis.is_some() { plan.expanded } else { TABLE_LEVELS };
+            let picked = basis.map_or(Vec::new(), |basis| source.picked(patch, &basis.picked));
+            let mut placed = place(source.patch(patch, levels), picked, slot, unit);
             placed.record[0] = first as u32;
             placed.record[3] = class.and_then(|class| matrices.get(class)).copied().unwrap_or(0);
             placed
@@ -130,7 +131,7 @@ fn differences(points: &[DVec3; 16]) -> [DVec3; 16] {
 }
 
 /// Writes the texels of one patch; the record lacks what other patches decide.
-fn place(net: PatchNet, expanded: usize, basis: Option<&Basis>, texels: &mut [[f32; 4]], unit: f64) -> Placed {
+fn place(net: PatchNet, mut picked: Vec<DVec3>, texels: &mut [[f32; 4]], unit: f64) -> Placed {
     let PatchNet { levels: cell, transition, net } = net;
     let mut at = 0;
     let mut row = |points: &[DVec3]| {
@@ -151,15 +152,12 @@ fn place(net: PatchNet, expanded: usize, basis: Option<&Basis>, texels: &mut [[f
             (bezier[5], KIND_GREGORY, 0, 0, None)
         }
         TableNet::Irregular { limit, normal, lambda, levels } => {
-            let stored = if basis.is_some() { expanded } else { levels.len().min(TABLE_LEVELS) };
-            levels[..stored].iter().for_each(|grid| WINDOW_ROWS.iter().for_each(|&i| row(&grid[i..i + 4])));
-            let mut picked: Vec<DVec3> =
-                basis.iter().flat_map(|basis| &basis.picked).map(|&[level, point]| levels[level - 1][point]).collect();
+            levels.iter().for_each(|grid| WINDOW_ROWS.iter().for_each(|&i| row(&grid[i..i + 4])));
             picked.resize(picked.len().next_multiple_of(4), DVec3::ZERO);
             picked.chunks_exact(4).for_each(&mut row);
             let [x, y, z] = normal.as_vec3().to_array();
             texels[at] = [x, y, z, 0.0];
-            (limit, KIND_IRREGULAR, stored as u32, picked.len() as u32 / 4, Some(lambda))
+            (limit, KIND_IRREGULAR, levels.len() as u32, picked.len() as u32 / 4, Some(lambda))
         }
         TableNet::Triangle(points) => {
             // Four zeros fill the last row.

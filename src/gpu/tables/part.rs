@@ -47,6 +47,14 @@ impl PatchSource for Part {
         self.whole.patch(self.at(patch), levels)
     }
 
+    fn picked(&self, patch: usize, picked: &[[usize; 2]]) -> Vec<DVec3> {
+        self.whole.picked(self.at(patch), picked)
+    }
+
+    fn place(&self, patch: usize) -> (DVec3, ([u8; 2], u8)) {
+        self.whole.place(self.at(patch))
+    }
+
     fn nets(&self, patch: usize) -> PatchNets<'_> {
         self.whole.nets(self.at(patch))
     }

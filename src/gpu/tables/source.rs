@@ -93,6 +93,16 @@ pub trait PatchSource: Debug + Send + Sync {
     fn class(&self, patch: usize) -> Option<usize>;
     /// A patch with so many levels, if it has as many.
     fn patch(&self, patch: usize, levels: usize) -> PatchNet;
+    /// Window points of an irregular patch that has a class, each by its level (from 1) and its number there.
+    fn picked(&self, patch: usize, picked: &[[usize; 2]]) -> Vec<DVec3> {
+        let deepest = picked.iter().map(|&[level, _]| level).max().unwrap_or(1);
+        match self.patch(patch, deepest).net {
+            TableNet::Irregular { levels, .. } => {
+                picked.iter().map(|&[level, point]| levels[level - 1][point]).collect()
+            }
+            _ => Vec::new(),
+        }
+    }
     /// Some point near a patch, and its cell: refinement levels and transition bits, as in [`PatchNet`].
     fn place(&self, patch: usize) -> (DVec3, ([u8; 2], u8)) {
         let PatchNet { levels, transition, net } = self.patch(patch, 1);
@@ -149,6 +159,10 @@ impl PatchSource for LimitSurface {
             Net::Irregular { limit, lambda, levels } => TableNet::Irregular { limit, normal: normal(), lambda, levels },
         };
         PatchNet { levels: record.levels(), transition: record.transition, net }
+    }
+
+    fn picked(&self, patch: usize, picked: &[[usize; 2]]) -> Vec<DVec3> {
+        self.window_points(patch, picked)
     }
 
     fn place(&self, patch: usize) -> (DVec3, ([u8; 2], u8)) {
