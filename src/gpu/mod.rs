@@ -100,7 +100,7 @@ pub struct Sample {
 pub struct Gpu {
     device: Device,
     /// For each content of tables.
-    passes: [Passes; 3],
+    passes: [Passes; Content::ALL.len()],
     startup: Duration,
 }
 

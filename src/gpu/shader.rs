@@ -67,13 +67,23 @@ pub(super) enum Content {
     Tails,
     /// Regular patches, levels and Gregory patches.
     Gregory,
+    /// As `Points`, some patches others in another place.
+    Instances,
+    /// As `Tails`, likewise.
+    InstancesWithTails,
 }
 
 impl Content {
-    pub const ALL: [Self; 3] = [Self::Points, Self::Tails, Self::Gregory];
+    pub const ALL: [Self; 5] = [Self::Points, Self::Tails, Self::Gregory, Self::Instances, Self::InstancesWithTails];
+
+    /// Whether levels may be given by picked points.
+    pub fn has_tail(self) -> bool {
+        matches!(self, Self::Tails | Self::InstancesWithTails)
+    }
 
     pub fn variant(self, block_rows: u32) -> Variant {
-        Variant { block_rows, has_tail: self == Self::Tails, has_gregory: self == Self::Gregory }
+        let has_instances = matches!(self, Self::Instances | Self::InstancesWithTails);
+        Variant { block_rows, has_tail: self.has_tail(), has_gregory: self == Self::Gregory, has_instances }
     }
 }
 
@@ -84,6 +94,7 @@ pub(super) struct Variant {
     pub block_rows: u32,
     pub has_tail: bool,
     pub has_gregory: bool,
+    pub has_instances: bool,
 }
 
 /// One shader module: its name, the files that it consists of, and its entry points.
@@ -99,7 +110,8 @@ impl Module {
     /// The whole source, constants first, for a field and for all that tables may hold.
     pub fn source(&self, method: &Method) -> String {
         // Levels that are given by picked points have no second derivatives.
-        let variant = Variant { block_rows: BLOCK_ROWS, has_tail: !method.reads_curvature(), has_gregory: true };
+        let has_tail = !method.reads_curvature();
+        let variant = Variant { block_rows: BLOCK_ROWS, has_tail, has_gregory: true, has_instances: true };
         self.source_for(&variant, &method.wgsl())
     }
 
@@ -252,6 +264,7 @@ fn constants(variant: &Variant) -> String {
         text.push_str(&format!("const {name} = array({});\n", ramp.map(vector).join(", ")));
     }
     text.push_str(&format!("const UNDEFINED_COLOUR = {};\n", vector(colours::UNDEFINED)));
-    text.push_str(&format!("const HAS_TAIL = {};\nconst HAS_GREGORY = {};\n", variant.has_tail, variant.has_gregory));
+    let has = [("TAIL", variant.has_tail), ("GREGORY", variant.has_gregory), ("INSTANCES", variant.has_instances)];
+    text.extend(has.map(|(name, is)| format!("const HAS_{name} = {is};\n")));
     text
 }

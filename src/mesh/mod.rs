@@ -11,6 +11,7 @@ mod error;
 mod lines;
 mod measure;
 mod obj;
+mod originals;
 mod parts;
 mod sample;
 mod tags;
@@ -22,6 +23,7 @@ use std::path::{Path, PathBuf};
 use glam::DVec3;
 
 pub use error::{MeshError, Place, Spot};
+pub use originals::Originals;
 pub use parts::{Part, PtexParts, Repeat};
 pub use sample::sample;
 pub use validate::{MAX_COORDINATE, MAX_VALENCE};

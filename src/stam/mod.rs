@@ -7,6 +7,7 @@ mod bspline;
 mod class;
 mod curvature;
 mod evaluate;
+mod instances;
 mod modes;
 mod moving;
 mod rings;

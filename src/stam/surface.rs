@@ -1,11 +1,13 @@
 //! The limit surface of a mesh: patches, points, tables, evaluation.
 
 use super::class::{ClassTable, WINDOW_POINTS};
+use super::instances::Instances;
 use crate::mesh::SubdivMesh;
 use crate::osd::Refiner;
 use crate::patch::{Adjacency, PHANTOM, Patch, PatchError, PatchKind, Patches, RingClass, slot};
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// The control net of a patch, as an evaluator wants it.
@@ -34,15 +36,27 @@ pub struct LimitSurface {
     tables: Arc<Vec<ClassTable>>,
     /// Refined points of all levels.
     points: Arc<Vec<DVec3>>,
+    /// Where parts of a scene are others in another place, what is in `patches` and `points` once.
+    instances: Option<Arc<Instances>>,
     diagonal: f64,
 }
 
 impl LimitSurface {
-    /// Refines the mesh and builds its patches and tables.
+    /// Refines the mesh and builds its patches and tables. Parts that repeat others ([`Part::repeats`](crate::mesh::Part::repeats))
+    /// take the patches and refined points of those, which are moved as they are read.
     ///
     /// # Errors
     /// The mesh is not valid, OpenSubdiv refuses it, or a face stays without a closed form.
     pub fn new(mesh: &SubdivMesh) -> Result<Self, PatchError> {
+        let Some(originals) = mesh.originals() else { return Self::flat(mesh) };
+        mesh.validate_points().map_err(crate::osd::Error::from)?;
+        let stored = Self::flat(&originals.mesh)?;
+        let instances = Instances::new(mesh, &originals, &stored.patches);
+        Ok(Self { instances: Some(Arc::new(instances)), diagonal: mesh.diagonal(), ..stored })
+    }
+
+    /// As [`new`](Self::new), with everything stored as often as it is there.
+    pub(crate) fn flat(mesh: &SubdivMesh) -> Result<Self, PatchError> {
         Ok(Self::with_refiner(mesh)?.0)
     }
 
@@ -55,6 +69,7 @@ impl LimitSurface {
             patches: Arc::new(patches),
             tables: Arc::new(tables),
             points: Arc::new(points),
+            instances: None,
             diagonal: mesh.diagonal(),
         };
         Ok((surface, refiner))
@@ -62,7 +77,28 @@ impl LimitSurface {
 
     /// All patches, in ptex order.
     pub fn patches(&self) -> &[Patch] {
-        self.patches.all()
+        self.instances.as_ref().map_or(self.patches.all(), |instances| instances.patches())
+    }
+
+    /// Number of patches that are stored: those of instances are those of their originals.
+    pub fn stored_patches(&self) -> usize {
+        self.patches.all().len()
+    }
+
+    /// Of a patch of an instance: the earlier patch that it repeats, and which of [`transforms`](Self::transforms) moves that.
+    pub fn instance(&self, patch: usize) -> Option<(usize, usize)> {
+        self.instances.as_ref()?.original(patch)
+    }
+
+    /// What moves the originals of instances, one an instance.
+    pub fn transforms(&self) -> Vec<DAffine3> {
+        let parts = self.instances.iter().flat_map(|instances| instances.parts());
+        parts.filter_map(|part| part.transform).collect()
+    }
+
+    /// Where a patch is stored, and what moves it from there.
+    fn stored(&self, patch: usize) -> (usize, Option<&DAffine3>) {
+        self.instances.as_ref().map_or((patch, None), |instances| instances.stored(patch))
     }
 
     /// The classes of the irregular patches, in the order of their tables.
@@ -77,12 +113,12 @@ impl LimitSurface {
 
     /// Index into [`classes`](Self::classes) of an irregular patch.
     pub fn class(&self, patch: usize) -> Option<usize> {
-        self.patches.class(patch)
+        self.patches.class(self.stored(patch).0)
     }
 
     /// Number of ptex faces, holes included.
     pub fn ptex_count(&self) -> usize {
-        self.patches.ptex_count()
+        self.instances.as_ref().map_or(self.patches.ptex_count(), |instances| instances.ptex_count())
     }
 
     /// Length of the bounding-box diagonal of the control points: the unit of every tolerance.
@@ -93,10 +129,19 @@ impl LimitSurface {
     /// A box that encloses the limit surface: that of the refined points that control it (all rules are convex
     /// combinations). `None` for a surface without patches.
     pub fn bounds(&self) -> Option<[DVec3; 2]> {
-        let used = (0..self.patches().len()).flat_map(|patch| self.patches.support(patch));
-        used.filter(|&&v| v != PHANTOM).map(|&v| self.points[v as usize]).fold(None, |bounds: Option<[DVec3; 2]>, p| {
-            Some(bounds.map_or([p, p], |[low, high]| [low.min(p), high.max(p)]))
-        })
+        let join = |a: Option<[DVec3; 2]>, [low, high]: [DVec3; 2]| {
+            Some(a.map_or([low, high], |[a, b]| [a.min(low), b.max(high)]))
+        };
+        let bounds = |patches: Range<usize>, moved: &dyn Fn(DVec3) -> DVec3| {
+            let used = patches.flat_map(|patch| self.patches.support(patch)).filter(|&&v| v != PHANTOM);
+            used.map(|&v| moved(self.points[v as usize])).fold(None, |bounds, p| join(bounds, [p, p]))
+        };
+        let Some(instances) = &self.instances else { return bounds(0..self.stored_patches(), &|p| p) };
+        let of_parts = instances.parts().iter().filter_map(|part| {
+            let stored = part.stored.start as usize..part.stored.end as usize;
+            bounds(stored, &|p| part.transform.map_or(p, |transform| transform.transform_point3(p)))
+        });
+        of_parts.fold(None, join)
     }
 
     /// The patch at (u,v), each 0 to 1, of a ptex face, and the patch-local parameters; `None` in a hole.
@@ -104,12 +149,18 @@ impl LimitSurface {
     /// # Panics
     /// `ptex` is not below [`ptex_count`](Self::ptex_count).
     pub fn locate(&self, ptex: u32, uv: [f64; 2]) -> Option<(usize, [f64; 2])> {
-        self.patches.locate(ptex, uv)
+        let Some(instances) = &self.instances else { return self.patches.locate(ptex, uv) };
+        let (stored, to_scene) = instances.stored_ptex(ptex);
+        self.patches.locate(stored, uv).map(|(patch, uv)| (to_scene(patch), uv))
     }
 
     /// What lies across every edge of every patch.
     pub fn adjacency(&self) -> Adjacency {
-        Adjacency::new(&self.patches)
+        let stored = Adjacency::new(&self.patches);
+        match &self.instances {
+            Some(instances) => stored.repeated(instances.parts().iter().map(|part| part.stored.clone())),
+            None => stored,
+        }
     }
 
     /// The kind of a patch.
@@ -119,7 +170,7 @@ impl LimitSurface {
 
     /// Refined vertices that control a patch, [`PHANTOM`] where there is none.
     pub(crate) fn support(&self, patch: usize) -> &[u32] {
-        self.patches.support(patch)
+        self.patches.support(self.stored(patch).0)
     }
 
     /// The same patches over other refined points, those of all levels.
@@ -135,6 +186,7 @@ impl LimitSurface {
     /// A surface with an error: point `point` of the support of a patch is moved, for this patch alone (strips along a
     /// crease share their support). `None` if there is no such point.
     pub(crate) fn with_point_moved(&self, patch: usize, point: usize, by: DVec3) -> Option<Self> {
+        let patch = self.stored(patch).0;
         let vertex = *self.patches.support(patch).get(point).filter(|&&vertex| vertex != PHANTOM)?;
         let (mut patches, mut points) = ((*self.patches).clone(), (*self.points).clone());
         patches.set_support(patch, point, points.len() as u32);
@@ -144,11 +196,13 @@ impl LimitSurface {
 
     /// The 16 points of a regular patch, phantom points filled in.
     pub(crate) fn regular_net(&self, patch: usize) -> [DVec3; 16] {
+        let (patch, transform) = self.stored(patch);
         let support = self.patches.support(patch);
         let mut net = [DVec3::ZERO; 16];
         for (point, &vertex) in net.iter_mut().zip(support) {
             if vertex != PHANTOM {
-                *point = self.points[vertex as usize];
+                let stored = self.points[vertex as usize];
+                *point = transform.map_or(stored, |transform| transform.transform_point3(stored));
             }
         }
         // A point beyond a sharp edge mirrors the inner row at the edge: rows first, then columns, which fills corners.
@@ -173,8 +227,12 @@ impl LimitSurface {
 
     /// Control points of an irregular patch relative to s0, and s0.
     pub(super) fn irregular_net(&self, patch: usize, table: &ClassTable) -> (Vec<DVec3>, DVec3) {
-        let mut points: Vec<DVec3> =
-            self.patches.support(patch).iter().map(|&vertex| self.points[vertex as usize]).collect();
+        let (patch, transform) = self.stored(patch);
+        let stored = self.patches.support(patch).iter().map(|&vertex| self.points[vertex as usize]);
+        let mut points: Vec<DVec3> = match transform {
+            Some(transform) => stored.map(|point| transform.transform_point3(point)).collect(),
+            None => stored.collect(),
+        };
         // Relative to the vertex first: world coordinates would cost digits.
         let centre = points[0];
         let offset = points.iter().zip(&table.limit).map(|(&p, &w)| w * (p - centre)).sum::<DVec3>();

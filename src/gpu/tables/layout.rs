@@ -3,6 +3,7 @@
 use super::basis::Basis;
 use super::{PatchSource, Storage, TABLE_LEVELS};
 use crate::gpu::shader::{LEVEL_TEXELS, SCALE_LEVELS};
+use glam::DAffine3;
 use rayon::prelude::*;
 use std::collections::HashSet;
 use std::fmt;
@@ -90,7 +91,9 @@ pub(super) struct Plan {
     pub bases: Vec<Option<Basis>>,
     /// Some patches are [`Storage::Gregory`].
     pub has_gregory: bool,
-    /// Texels in the table of points: matrices first, then patches.
+    /// What moves instances; none where there are more than records can count, so that every patch has its own points.
+    pub transforms: Vec<DAffine3>,
+    /// Texels in the table of points: transforms and matrices first, then patches.
     pub texels: u64,
     /// Bytes of all tables.
     pub bytes: u64,
@@ -99,7 +102,7 @@ pub(super) struct Plan {
 impl Plan {
     /// Plans `layout`; `Auto` keeps to [`BUDGET`] and to `limit` texels of points.
     pub fn new<S: PatchSource + ?Sized>(source: &S, layout: TableLayout, limit: u64) -> Plan {
-        let census = Census::new(source);
+        let census = Census::new(source, &shared(source));
         if layout != TableLayout::Auto {
             return Plan::of(source, &census, layout);
         }
@@ -121,14 +124,15 @@ impl Plan {
             false => Vec::new(),
         };
         let has_gregory = census.gregory > 0;
-        let mut plan = Plan { layout, expanded, bases, has_gregory, texels: 0, bytes: 0 };
+        let transforms = shared(source);
+        let mut plan = Plan { layout, expanded, bases, has_gregory, transforms, texels: 0, bytes: 0 };
         let matrices: usize = (0..plan.bases.len()).map(|class| plan.matrix_texels(class)).sum();
         let irregular: usize =
             census.classes.iter().enumerate().map(|(class, &count)| count * plan.irregular_texels(Some(class))).sum();
         let rest = census.regular * REGULAR_TEXELS
             + census.gregory * GREGORY_TEXELS
             + census.classless * plan.irregular_texels(None);
-        plan.texels = (matrices + irregular + rest) as u64;
+        plan.texels = (plan.transforms.len() * TRANSFORM_TEXELS + matrices + irregular + rest) as u64;
         plan.bytes =
             16 * (source.count() as u64 + plan.texels) + 8 * u64::from(SCALE_LEVELS) * census.eigenvalues as u64;
         plan
@@ -164,7 +168,20 @@ impl Plan {
     }
 }
 
-/// How many patches there are of each class.
+/// Texels of a transform: the columns of its matrix.
+pub(super) const TRANSFORM_TEXELS: usize = 3;
+
+/// Transforms that records can count, and scales that they can point to: 16 bits each.
+const MOST_TRANSFORMS: usize = u16::MAX as usize;
+
+/// What moves the instances that share points with their originals.
+fn shared<S: PatchSource + ?Sized>(source: &S) -> Vec<DAffine3> {
+    let transforms = source.transforms();
+    let scales = SCALE_LEVELS as usize * source.classes().len();
+    if transforms.len() <= MOST_TRANSFORMS && scales <= MOST_TRANSFORMS { transforms } else { Vec::new() }
+}
+
+/// How many patches with points of their own there are of each class.
 struct Census {
     regular: usize,
     gregory: usize,
@@ -176,11 +193,12 @@ struct Census {
 }
 
 impl Census {
-    fn new<S: PatchSource + ?Sized>(source: &S) -> Census {
+    fn new<S: PatchSource + ?Sized>(source: &S, transforms: &[DAffine3]) -> Census {
         let mut census =
             Census { regular: 0, gregory: 0, classes: vec![0; source.classes().len()], classless: 0, eigenvalues: 0 };
         let mut eigenvalues = HashSet::new();
-        for patch in 0..source.count() {
+        let is_own = |patch: &usize| transforms.is_empty() || source.instance(*patch).is_none();
+        for patch in (0..source.count()).filter(is_own) {
             match (source.storage(patch), source.class(patch)) {
                 (Storage::Regular, _) => census.regular += 1,
                 (Storage::Gregory, _) => census.gregory += 1,

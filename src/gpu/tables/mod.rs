@@ -11,8 +11,9 @@
 //! and a matrix of the class ([`TableLayout`], `basis.rs`).
 //!
 //! # Practice
-//! One texture of points: matrices of the classes, then the patches in order, 192 B a regular one. What a texel means is
-//! described in `shaders/shared/tables.wgsl`. Tables are built and handed over some 16 MiB at a time. Everything is divided
+//! One texture of points: what moves instances, matrices of the classes, then the patches in order, 192 B a regular one. A patch
+//! that is another one in another place has a record of its own (16 B), and no points. What a texel means is described in
+//! `shaders/shared/tables.wgsl`. Tables are built and handed over some 16 MiB at a time. Everything is divided
 //! by [`Tables::unit`], a power of two near the size of the object, so that models in microns and in kilometres use the
 //! same part of f32.
 
@@ -50,6 +51,7 @@ pub struct Tables {
     bounds: [DVec3; 2],
     layout: TableLayout,
     has_gregory: bool,
+    has_instances: bool,
     size: u64,
     unit: f64,
 }
@@ -94,7 +96,9 @@ impl Tables {
     pub(super) fn content(&self) -> Content {
         match self.layout {
             _ if self.has_gregory => Content::Gregory,
+            TableLayout::Expanded if self.has_instances => Content::Instances,
             TableLayout::Expanded => Content::Points,
+            _ if self.has_instances => Content::InstancesWithTails,
             _ => Content::Tails,
         }
     }
@@ -154,6 +158,7 @@ pub(super) fn upload<S: PatchSource + ?Sized>(
         bounds,
         layout: plan.layout,
         has_gregory: plan.has_gregory,
+        has_instances: !plan.transforms.is_empty(),
         unit,
     })
 }

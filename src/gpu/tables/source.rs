@@ -3,7 +3,7 @@
 use crate::adaptive::{AdaptivePatches, Gregory};
 use crate::osd::FarNet;
 use crate::stam::{ClassTable, LimitSurface, Net, Rings, WINDOW_POINTS};
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use std::fmt::Debug;
 use std::sync::Arc;
 
@@ -70,6 +70,16 @@ pub trait PatchSource: Debug + Send + Sync {
     fn classes(&self) -> &[ClassTable];
     /// Index into [`classes`](Self::classes) of an irregular patch.
     fn class(&self, patch: usize) -> Option<usize>;
+    /// Of a patch that is an earlier one in another place: that one, and which of [`transforms`](Self::transforms) moves it.
+    fn instance(&self, _patch: usize) -> Option<(usize, usize)> {
+        None
+    }
+
+    /// What moves patches to where their instances are.
+    fn transforms(&self) -> Vec<DAffine3> {
+        Vec::new()
+    }
+
     /// A patch with so many levels, if it has as many.
     fn patch(&self, patch: usize, levels: usize) -> PatchNet;
     /// The nets of a patch.
@@ -97,6 +107,14 @@ impl PatchSource for LimitSurface {
 
     fn class(&self, patch: usize) -> Option<usize> {
         self.class(patch)
+    }
+
+    fn instance(&self, patch: usize) -> Option<(usize, usize)> {
+        self.instance(patch)
+    }
+
+    fn transforms(&self) -> Vec<DAffine3> {
+        self.transforms()
     }
 
     fn patch(&self, patch: usize, levels: usize) -> PatchNet {
