@@ -6,7 +6,7 @@ use std::process::Command;
 
 use catoptric::field::{CurvatureKind, Field, Method, Scout};
 use catoptric::gpu::{Gpu, NO_PATCH, Sample, TableLayout, View, tables};
-use catoptric::mesh::{self, SubdivMesh};
+use catoptric::mesh::{self, Choice, SubdivMesh};
 use catoptric::stam::LimitSurface;
 use glam::DVec3;
 
@@ -60,12 +60,13 @@ fn assert_same(mesh: &SubdivMesh) {
     }
 }
 
-/// Six places by instances and references, in which usd-core has the same points.
+/// Six places by instances and references, and seven of a PointInstancer, in which usd-core has the same points.
 #[test]
 fn instances_are_what_they_are_by_themselves() {
-    for extension in ["usda", "usdc", "usdz"] {
-        let mesh = mesh::read(&folder().join("instances").with_extension(extension)).expect("a scene");
-        let stage = expected("instances");
+    let files = ["instances", "scattered"].into_iter().flat_map(|name| ["usda", "usdc", "usdz"].map(|e| (name, e)));
+    for (name, extension) in files {
+        let mesh = mesh::read(&folder().join(name).with_extension(extension)).expect("a scene");
+        let stage = expected(name);
         assert_eq!(mesh.parts.len(), stage.times[0].meshes.len());
         let mut originals = 0;
         for (part, prim) in mesh.parts.iter().zip(&stage.times[0].meshes) {
@@ -73,10 +74,12 @@ fn instances_are_what_they_are_by_themselves() {
             let points = &mesh.points[part.points.start as usize..part.points.end as usize];
             let world = prim.world();
             let size = world.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
-            assert!(points.iter().zip(&world).all(|(a, b)| a.distance(*b) <= 1e-14 * size));
+            let worst = points.iter().zip(&world).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max) / size;
+            assert!(worst <= 1e-14, "{}: {worst:e}", prim.prim);
+            assert_eq!(points.len(), world.len());
             originals += usize::from(part.repeats.is_none());
         }
-        // Those that mirror, and those that do not.
+        // Those that mirror, and those that do not; two prototypes.
         assert_eq!(originals, 2, "{:?}", repeats(&mesh));
         assert_same(&mesh);
     }
@@ -132,7 +135,11 @@ fn tables_are_shared() {
             angle = angle.max(jet.normal.angle_between(exact.normal).to_degrees());
             assert!(jet.du.distance(exact.du) <= 1e-5 * exact.du.length().max(exact.dv.length()));
         }
-        println!("{layout}: {} of {} bytes; {position:.1e} of the diagonal, {angle:.1e} degrees", small.size(), large.size());
+        println!(
+            "{layout}: {} of {} bytes; {position:.1e} of the diagonal, {angle:.1e} degrees",
+            small.size(),
+            large.size()
+        );
         // What the fragment tier allows.
         assert!(position <= 2e-6 && angle <= 1e-3, "{layout}: {position:e} {angle:e}");
     }
@@ -204,5 +211,20 @@ fn verify_passes() {
         assert!(told.status.success(), "{}", String::from_utf8_lossy(&told.stdout));
     };
     run(&folder.path().join("two.usda"));
-    run(&crate::fixtures::folder().join("instances.usda"));
+    run(&folder().join("scattered.usda"));
+}
+
+#[test]
+fn instances_are_chosen_by_number() {
+    let path = folder().join("scattered.usda");
+    let names = |prim: &str| {
+        let choice = Choice { prims: vec![prim.to_owned()], ..Choice::default() };
+        let mesh = mesh::read_choice(&path, &choice).map_err(|error| error.to_string())?;
+        Ok::<_, String>(mesh.parts.into_iter().map(|part| part.name).collect::<Vec<_>>().join(" "))
+    };
+    assert_eq!(names("/world/scatter[5]").as_deref(), Ok("/world/scatter[5]/crown"));
+    assert_eq!(names("/world/scatter[2]").as_deref(), Ok("/world/scatter[2]"));
+    assert_eq!(names("/world").map(|names| names.split(' ').count()), Ok(7));
+    // Instance 3 is invisible, and prototypes are not shown by themselves.
+    assert!(names("/world/scatter[3]").is_err() && names("/world/scatter/stone").is_err());
 }

@@ -70,13 +70,13 @@ fn operation(node: &Node<'_>, op: &str) -> Result<DMat4, MeshError> {
     Ok(if inverted { matrix.inverse() } else { matrix })
 }
 
-fn scaling(factors: DVec3) -> DMat4 {
+pub(super) fn scaling(factors: DVec3) -> DMat4 {
     // Not from_scale, which does not take zeros in debug builds.
     DMat4::from_diagonal(factors.extend(1.0))
 }
 
 /// The turn of a quaternion, as `GfRotation::SetQuat` reads it: one whose length is not 1 turns by its real part.
-fn orientation(real: f64, imaginary: DVec3) -> DMat4 {
+pub(super) fn orientation(real: f64, imaginary: DVec3) -> DMat4 {
     match imaginary.try_normalize() {
         Some(axis) => DMat4::from_axis_angle(axis, 2.0 * real.clamp(-1.0, 1.0).acos()),
         None => DMat4::IDENTITY,
