@@ -50,6 +50,11 @@ Outcome &outcome() noexcept;
 void install_callbacks();
 std::unique_ptr<Far::TopologyRefiner> make_refiner(osd_mesh const &mesh);
 
+// Ptex faces that a control face of `size` corners takes.
+inline int ptex_faces(osd_mesh const &mesh, int size) {
+    return size == (mesh.scheme == OSD_SCHEME_LOOP ? 3 : 4) ? 1 : size;
+}
+
 // A point as PrimvarRefiner and stencils want it: cleared, then a weighted sum.
 struct Point {
     double x[3];

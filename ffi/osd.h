@@ -29,6 +29,9 @@ const char *osd_version(void);
 typedef enum osd_boundary { OSD_BOUNDARY_NONE, OSD_BOUNDARY_EDGE_ONLY, OSD_BOUNDARY_EDGE_AND_CORNER } osd_boundary;
 typedef enum osd_creasing { OSD_CREASING_UNIFORM, OSD_CREASING_CHAIKIN } osd_creasing;
 
+/* Triangles alone under LOOP. */
+typedef enum osd_scheme { OSD_SCHEME_CATMULL_CLARK, OSD_SCHEME_LOOP, OSD_SCHEME_BILINEAR } osd_scheme;
+
 typedef struct osd_mesh {
     int32_t vertex_count;
     int32_t face_count;
@@ -42,6 +45,7 @@ typedef struct osd_mesh {
     const float *corner_sharpness;    /* corner_count */
     int32_t hole_count;
     const int32_t *holes;             /* hole_count */
+    osd_scheme scheme;
     osd_boundary boundary;
     osd_creasing creasing;
 } osd_mesh;
@@ -82,6 +86,7 @@ typedef struct osd_level_arrays {
     int32_t *face_vertices;           /* face_vertices */
     int32_t *face_edges;              /* face_vertices: edge i runs from vertex i to vertex i+1 */
     int32_t *face_children;           /* face_vertices: the child at vertex i */
+    int32_t *face_middles;            /* faces: under LOOP the child that has none of its vertices, else -1 */
     uint8_t *face_holes;              /* faces: 1 for holes, faces that the boundary rule leaves out included */
     int32_t *edge_faces;              /* 2 * edges: second is -1 on a boundary, both are -2 where not manifold */
     float *edge_sharpness;            /* edges: 10 is infinite */
@@ -129,7 +134,7 @@ void osd_far_destroy(osd_far *far);
 /* What a patch table holds. */
 typedef struct osd_far_sizes {
     int64_t patches;
-    int64_t control_points;           /* sum over the patches, 16 or 20 each */
+    int64_t control_points;           /* sum over the patches */
     int64_t bytes;                    /* control vertex indices, patch parameters, and its points in double precision */
 } osd_far_sizes;
 osd_status osd_far_measure(const osd_far *far, osd_far_sizes *out);
@@ -138,7 +143,8 @@ osd_status osd_far_measure(const osd_far *far, osd_far_sizes *out);
 typedef struct osd_far_patch {
     double origin[2];                 /* (u,v) of its first corner, in parameters of the ptex face */
     int32_t face;                     /* ptex face */
-    int32_t points;                   /* 16: a bicubic B-spline; 20: a Gregory patch (Far::PatchDescriptor) */
+    int32_t points;                   /* 16: a bicubic B-spline; 20: a Gregory patch (Far::PatchDescriptor); 4: bilinear;
+                                         12, 18: those of triangles */
     uint8_t depth;                    /* its side is 2^-depth of the ptex face */
     uint8_t level;                    /* refinement level of its face in the control mesh */
     uint8_t boundary;                 /* bit i: beyond edge i there are no control points, those given mean nothing */

@@ -37,7 +37,7 @@ struct osd_bfr {
     std::unique_ptr<Factory> factory;
     std::vector<double> mesh_points;
     struct Ptex {
-        int face, sub_face; // sub_face is -1 for a quad
+        int face, sub_face; // sub_face is -1 for a face that is one ptex face
     };
     std::vector<Ptex> ptex;
 
@@ -175,7 +175,7 @@ osd_status osd_bfr_create(const osd_mesh *mesh, const double *points, int32_t sm
         bfr->mesh_points.assign(points, points + 3 * mesh->vertex_count);
         for (int face = 0; face < mesh->face_count; ++face) {
             int const size = mesh->face_sizes[face];
-            if (size == 4) bfr->ptex.push_back({face, -1});
+            if (ptex_faces(*mesh, size) == 1) bfr->ptex.push_back({face, -1});
             else
                 for (int corner = 0; corner < size; ++corner) bfr->ptex.push_back({face, corner});
         }
@@ -219,7 +219,8 @@ osd_status osd_bfr_evaluate(osd_bfr *bfr, int32_t count, const int32_t *faces, c
             }
             bfr->surface.Evaluate(coordinate, bfr->patch_points.data(), 3, jets, jets + 3, jets + 6);
             for (int k = 3; k < 9; ++k) jets[k] *= scale;
-            answers[i] = bfr->surface.IsRegular() ? OSD_ANSWER_REGULAR : OSD_ANSWER_END_CAP;
+            bool const exact = bfr->surface.IsRegular() || bfr->surface.IsLinear();
+            answers[i] = exact ? OSD_ANSWER_REGULAR : OSD_ANSWER_END_CAP;
         }
     });
 }

@@ -21,6 +21,15 @@ void install_callbacks() {
     });
 }
 
+static Sdc::SchemeType to_sdc(osd_scheme scheme) {
+    switch (scheme) {
+    case OSD_SCHEME_CATMULL_CLARK: return Sdc::SCHEME_CATMARK;
+    case OSD_SCHEME_LOOP: return Sdc::SCHEME_LOOP;
+    case OSD_SCHEME_BILINEAR: return Sdc::SCHEME_BILINEAR;
+    }
+    throw std::invalid_argument("unknown scheme");
+}
+
 std::unique_ptr<Far::TopologyRefiner> make_refiner(osd_mesh const &mesh) {
     Sdc::Options rules;
     switch (mesh.boundary) {
@@ -51,7 +60,7 @@ std::unique_ptr<Far::TopologyRefiner> make_refiner(osd_mesh const &mesh) {
 
     using Factory = Far::TopologyRefinerFactory<Far::TopologyDescriptor>;
     std::unique_ptr<Far::TopologyRefiner> refiner(
-        Factory::Create(topology, Factory::Options(Sdc::SCHEME_CATMARK, rules)));
+        Factory::Create(topology, Factory::Options(to_sdc(mesh.scheme), rules)));
     if (!refiner)
         throw std::runtime_error(outcome().failed ? outcome().message
                                                   : "OpenSubdiv refused the topology without a reason");
@@ -178,9 +187,12 @@ osd_status osd_refiner_level(const osd_refiner *handle, int32_t level, const osd
             std::copy(vertices.begin(), vertices.end(), out->face_vertices + offset);
             std::copy(edges.begin(), edges.end(), out->face_edges + offset);
             std::fill_n(out->face_children + offset, vertices.size(), -1);
+            out->face_middles[f] = -1;
             if (has_children) {
+                // A triangle under Loop's scheme has one more, the last.
                 auto const children = topology.GetFaceChildFaces(f);
-                std::copy(children.begin(), children.end(), out->face_children + offset);
+                std::copy_n(children.begin(), vertices.size(), out->face_children + offset);
+                if (children.size() > vertices.size()) out->face_middles[f] = children[vertices.size()];
             }
             offset += vertices.size();
         }

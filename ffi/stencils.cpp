@@ -116,8 +116,7 @@ osd_status osd_stencils_create(const osd_mesh *mesh, int32_t isolation, osd_sten
         handle->base = make_refiner(*mesh);
         handle->isolation = isolation;
         for (int face = 0; face < mesh->face_count; ++face) {
-            int const size = mesh->face_sizes[face];
-            handle->face_of_ptex.insert(handle->face_of_ptex.end(), size == 4 ? 1 : size, face);
+            handle->face_of_ptex.insert(handle->face_of_ptex.end(), ptex_faces(*mesh, mesh->face_sizes[face]), face);
         }
         return handle;
     });

@@ -28,7 +28,9 @@ inline double derivative_scale(OpenSubdiv::Far::PatchParam param) { return param
 
 inline bool is_regular(OpenSubdiv::Far::PatchTable const &table,
                        OpenSubdiv::Far::PatchTable::PatchHandle const &handle) {
-    return table.GetPatchDescriptor(handle).GetType() == OpenSubdiv::Far::PatchDescriptor::REGULAR;
+    using Descriptor = OpenSubdiv::Far::PatchDescriptor;
+    auto const type = table.GetPatchDescriptor(handle).GetType();
+    return type == Descriptor::REGULAR || type == Descriptor::LOOP || type == Descriptor::QUADS;
 }
 
 } // namespace catoptric

@@ -33,7 +33,7 @@ pub(super) fn run(args: &EvalArgs) -> Result<(), Failure> {
     args.output.as_deref().map_or(Ok(()), check_writable)?;
     let mesh = args.scene.load(args.mesh.as_deref())?;
     let surface = LimitSurface::new(&mesh).map_err(|e| Failure::of(&mesh, e))?;
-    let samples = read(&args.samples, surface.ptex_count())?;
+    let samples = read(&args.samples, &surface)?;
     let jets = match args.backend {
         Backend::Cpu => samples.par_iter().map(|s| Some(surface.evaluate_ptex(s.face, s.uv())?.1)).collect(),
         Backend::Gpu => on_gpu(&surface, &samples)?,
@@ -43,7 +43,7 @@ pub(super) fn run(args: &EvalArgs) -> Result<(), Failure> {
 }
 
 /// Reads `face,u,v` rows, every one checked.
-fn read(path: &Path, faces: usize) -> Result<Vec<Sample>, Failure> {
+fn read(path: &Path, surface: &LimitSurface) -> Result<Vec<Sample>, Failure> {
     let header = |header: Option<&StringRecord>| {
         let header = header.filter(|header| header.iter().eq(["face", "u", "v"])).cloned();
         header.ok_or_else(|| "the header is not face,u,v; make it the first line".to_owned())
@@ -51,7 +51,7 @@ fn read(path: &Path, faces: usize) -> Result<Vec<Sample>, Failure> {
     let not_a_row = "not a row of face,u,v (a whole number and two numbers); correct it";
     Rows::open(path, "samples", "face,u,v")?.read(header, not_a_row, |header, row| {
         let sample: Sample = row.deserialize(Some(header)).map_err(|_| not_a_row.to_owned())?;
-        check_place((sample.face, sample.u, sample.v), faces)?;
+        check_place((sample.face, sample.u, sample.v), surface.ptex_count(), surface.has_triangles())?;
         Ok(sample)
     })
 }

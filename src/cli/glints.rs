@@ -17,7 +17,7 @@ pub(super) fn run(args: &GlintsArgs) -> Result<(), Failure> {
     if args.eye_direction == Some(DVec3::ZERO) {
         return Err(Failure::Bad("--eye-direction has no direction; give one that is not 0,0,0".to_owned()));
     }
-    let mesh = args.scene.load(args.mesh.as_deref())?;
+    let mesh = args.scene.load_quads(args.mesh.as_deref(), "glints")?;
     let surface = LimitSurface::new(&mesh).map_err(|e| Failure::of(&mesh, e))?;
     let eye = match (args.eye, args.eye_direction) {
         (_, Some(direction)) => PathEnd::Direction(direction),

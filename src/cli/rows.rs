@@ -66,12 +66,16 @@ fn line_of(text: &[u8], start: usize) -> u64 {
 }
 
 /// Refuses what lies on no ptex face.
-pub(super) fn check_place((face, u, v): Place, faces: usize) -> Result<(), String> {
+pub(super) fn check_place((face, u, v): Place, faces: usize, triangles: bool) -> Result<(), String> {
     if face as usize >= faces {
         return Err(format!("ptex face {face} does not exist; the mesh has {faces}, counted from 0"));
     }
     match [("u", u), ("v", v)].into_iter().find(|(_, x)| !(0.0..=1.0).contains(x)) {
         Some((name, x)) => Err(format!("{name} = {x} is outside 0 to 1; correct it")),
+        // What rounding may add is taken for the edge itself.
+        None if triangles && u + v > 1.0 + 1e-12 => {
+            Err(format!("u + v = {} is outside the triangle; correct it", u + v))
+        }
         None => Ok(()),
     }
 }

@@ -3,7 +3,7 @@
 use super::Failure;
 use super::numbered::Numbered;
 use super::settings::CommandLine;
-use crate::mesh::{self, Choice, MeshFile, SubdivMesh};
+use crate::mesh::{self, Choice, MeshFile, Scheme, SubdivMesh};
 use clap::Args;
 use std::path::{Path, PathBuf};
 
@@ -31,6 +31,13 @@ impl SceneArgs {
     /// Reads the mesh, or makes the built-in sample; says on standard error what the reader has to say.
     pub(super) fn load(&self, path: Option<&Path>) -> Result<SubdivMesh, Failure> {
         self.read(path).map_err(Failure::Bad)
+    }
+
+    /// As [`load`](Self::load), for a command that does not know triangles under Loop's rules.
+    pub(super) fn load_quads(&self, path: Option<&Path>, command: &str) -> Result<SubdivMesh, Failure> {
+        let mesh = self.load(path)?;
+        check_quads(&mesh, command).map_err(Failure::Bad)?;
+        Ok(mesh)
     }
 
     /// As [`load`](Self::load); the error is one line.
@@ -134,6 +141,15 @@ fn times(text: &str) -> Result<Times, String> {
             }
         }
         _ => Err(form()),
+    }
+}
+
+/// Refuses triangles under Loop's rules for a command that does not know them; the error is one line.
+pub(super) fn check_quads(mesh: &SubdivMesh, command: &str) -> Result<(), String> {
+    let known = "eval, info and verify do, or use catmullClark";
+    match mesh.scheme {
+        Scheme::Loop => Err(format!("{}: the scheme loop is not supported by {command}; {known}", mesh.name)),
+        _ => Ok(()),
     }
 }
 

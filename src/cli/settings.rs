@@ -3,7 +3,7 @@
 use super::render::RenderArgs;
 use crate::field::{Camera, Grid, Method, Palette, Pattern, Projection};
 use crate::gpu::View;
-use crate::mesh::{Boundary, Creasing, SubdivMesh};
+use crate::mesh::{Boundary, Creasing, Scheme, SubdivMesh};
 use crate::rig::{Attachment, Colours, FittedRig, PatternName};
 use clap::ValueEnum;
 use glam::DVec3;
@@ -220,7 +220,13 @@ pub(super) fn mesh_digest(mesh: &SubdivMesh) -> u64 {
         Boundary::EdgeOnly => 1,
         Boundary::EdgeAndCorner => 2,
     };
-    digest.bytes(&[boundary, u8::from(mesh.creasing == Creasing::Chaikin)]);
+    let scheme = match mesh.scheme {
+        Scheme::CatmullClark => 0,
+        Scheme::Loop => 2,
+        Scheme::Bilinear => 4,
+        Scheme::None => 6,
+    };
+    digest.bytes(&[boundary, scheme | u8::from(mesh.creasing == Creasing::Chaikin)]);
     digest.0
 }
 

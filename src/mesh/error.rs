@@ -155,6 +155,12 @@ pub enum MeshError {
     FaceTooSmall { at: Place, size: usize },
     #[error("{at}: a face with {size} vertices, but OpenSubdiv takes at most {MAX_VALENCE}; split it")]
     FaceTooLarge { at: Place, size: usize },
+    #[error(
+        "{at}: a face with {size} vertices, but the scheme loop takes triangles; triangulate it, or use catmullClark"
+    )]
+    NotTriangle { at: Place, size: usize },
+    #[error("{at}: a face that is concave or crosses itself under the scheme none; cut it into convex faces")]
+    FaceConcave { at: Place },
     #[error("{at}: a face with vertex {vertex}, but the mesh has only {first} to {last}; correct it")]
     VertexOutOfRange { at: Place, vertex: u64, first: u64, last: u64 },
     #[error("{at}: a face with vertex {vertex} twice; name each vertex of a face once")]
@@ -193,7 +199,7 @@ pub enum MeshError {
          write t NAME INTS/FLOATS/STRINGS and then as many values"
     )]
     TagWithoutHeader { at: Place },
-    #[error("{at}: tag '{name}' is unknown; use crease, corner, hole, interpolateboundary or creasemethod")]
+    #[error("{at}: tag '{name}' is unknown; use crease, corner, hole, interpolateboundary, creasemethod or scheme")]
     UnknownTag { at: Place, name: String },
     #[error("{at}: the {name} tag announces {announced} values and has {found}; correct its counts")]
     TagCountMismatch { at: Place, name: String, announced: usize, found: usize },
@@ -231,8 +237,10 @@ pub enum MeshError {
     AttributeLength { at: Place, name: &'static str, found: usize, expected: String },
     #[error("{at}: creaseLengths has {length}; a crease has at least 2 vertices")]
     CreaseTooShort { at: Place, length: u32 },
-    #[error("{at}: subdivisionScheme {scheme} is not evaluated so far; use catmullClark")]
-    SchemeUnsupported { at: Place, scheme: String },
+    #[error("{at}: subdivisionScheme '{scheme}' is none of USD's; use catmullClark, loop, bilinear or none")]
+    SchemeUnknown { at: Place, scheme: String },
+    #[error("{at}: subdivisionScheme {found}, but other meshes have {first}, and a scene has one; make them agree")]
+    SchemeMixed { at: Place, first: &'static str, found: &'static str },
     #[error("{at}: xformOpOrder has {op}, which is no transform of USD; correct it")]
     TransformUnknown { at: Place, op: String },
     #[error("{at}: xformOpOrder has {op}, which has no value; give it one or leave it out")]

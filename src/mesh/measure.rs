@@ -10,6 +10,11 @@ impl SubdivMesh {
         self.face_sizes.len()
     }
 
+    /// Number of ptex faces, holes included: a quad is one, an n-gon n; under Loop's scheme a triangle is one.
+    pub fn ptex_count(&self) -> usize {
+        self.face_sizes.iter().map(|&size| self.ptex_faces_of(size as usize)).sum()
+    }
+
     /// Number of control points, those that no face uses included.
     pub fn vertex_count(&self) -> usize {
         self.points.len()

@@ -1,4 +1,4 @@
-//! What comes in: a control mesh with Catmull-Clark features, validated before OpenSubdiv sees it.
+//! What comes in: a control mesh with the features of its subdivision scheme, validated before OpenSubdiv sees it.
 //!
 //! [`read`] is the way in from a file. A mesh made through the library passes [`SubdivMesh::validate`] instead; both
 //! run the same checks, because OpenSubdiv 3.5.0 crashes on some invalid meshes and silently accepts others.
@@ -13,7 +13,9 @@ mod measure;
 mod obj;
 mod originals;
 mod parts;
+mod polygon;
 mod sample;
+mod scheme;
 mod tags;
 mod usd;
 mod validate;
@@ -26,6 +28,7 @@ pub use error::{MeshError, Place, Spot};
 pub use originals::Originals;
 pub use parts::{Part, PtexParts, Repeat};
 pub use sample::sample;
+pub use scheme::Scheme;
 pub use validate::{MAX_COORDINATE, MAX_VALENCE};
 
 /// Extensions of the files that [`read`] reads, in lower case.
@@ -143,7 +146,7 @@ pub struct Corner {
     pub sharpness: f32,
 }
 
-/// A Catmull-Clark control mesh: polygons, points and features.
+/// A control mesh: polygons, points, features, and the rules that subdivide it.
 ///
 /// Faces are counter-clockwise seen from outside; edges may be shared by more than two faces (non-manifold meshes are
 /// legal). If an edge has several creases or a vertex several corners, the last one counts, as in OpenSubdiv.
@@ -163,6 +166,8 @@ pub struct SubdivMesh {
     pub corners: Vec<Corner>,
     /// Faces that take part in subdivision but have no surface.
     pub holes: Vec<u32>,
+    /// Rules of subdivision.
+    pub scheme: Scheme,
     /// Boundary rule.
     pub boundary: Boundary,
     /// Decay of finite sharpness.

@@ -46,6 +46,7 @@ impl SubdivMesh {
         }
         let mut mesh = SubdivMesh {
             name: self.name.clone(),
+            scheme: self.scheme,
             boundary: self.boundary,
             creasing: self.creasing,
             ..SubdivMesh::default()

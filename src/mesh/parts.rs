@@ -55,22 +55,12 @@ impl<'a> PtexParts<'a> {
 }
 
 impl SubdivMesh {
-    /// Number of ptex faces that a face of so many vertices is: a quad is one, any other n-gon n, one a corner.
-    pub fn ptex_faces_of(&self, size: u32) -> u32 {
-        if size == 4 { 1 } else { size }
-    }
-
-    /// Number of ptex faces, holes included.
-    pub fn ptex_count(&self) -> usize {
-        self.face_sizes.iter().map(|&size| self.ptex_faces_of(size) as usize).sum()
-    }
-
     /// Which part each ptex face is of.
     pub fn ptex_parts(&self) -> PtexParts<'_> {
         let mut end = 0;
         let ends = self.parts.iter().map(|part| {
             let sizes = self.face_sizes.get(part.faces.start as usize..part.faces.end as usize).unwrap_or_default();
-            end += sizes.iter().map(|&size| self.ptex_faces_of(size)).sum::<u32>();
+            end += sizes.iter().map(|&size| self.ptex_faces_of(size as usize) as u32).sum::<u32>();
             end
         });
         PtexParts { ends: ends.collect(), parts: &self.parts }

@@ -8,7 +8,7 @@
 //!
 //! Metres. `x` points to the rear, `y` out of the car, `z` up.
 
-use super::{Boundary, Corner, Crease, Creasing, SubdivMesh};
+use super::{Boundary, Corner, Crease, Creasing, Scheme, SubdivMesh};
 use glam::{DVec2, DVec3, dvec2};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -411,6 +411,7 @@ pub fn sample() -> SubdivMesh {
         creases: layout.creases,
         corners,
         holes: Vec::new(),
+        scheme: Scheme::CatmullClark,
         boundary: Boundary::EdgeAndCorner,
         creasing: Creasing::Uniform,
         ..SubdivMesh::default()

@@ -10,6 +10,7 @@
 //! | `hole` | faces |
 //! | `interpolateboundary` | 0 none, 1 edge and corner, 2 edge only |
 //! | `creasemethod` | `normal` (or `uniform`), `chaikin` |
+//! | `scheme` | `catmullClark`, `loop`, `bilinear`, `none`; ours: OpenSubdiv's files leave the scheme to their name |
 //! | `smoothtriangles` | `catmark`; `smooth` would change the surface and is refused |
 //! | `facevaryinginterpolateboundary`, `facevaryingpropagatecorners` | ignored: there is no face-varying data here |
 //!
@@ -19,7 +20,7 @@
 
 use super::error::{MeshError, Place, quote};
 use super::validate::Lines;
-use super::{Boundary, Corner, Crease, Creasing, SubdivMesh};
+use super::{Boundary, Corner, Crease, Creasing, Scheme, SubdivMesh};
 
 /// The values of one tag, by kind, still as text.
 struct Values<'a> {
@@ -61,6 +62,7 @@ pub(super) fn read<F: Fn() -> Place>(
         b"hole" => tag.hole(mesh, lines),
         b"interpolateboundary" => tag.boundary(mesh),
         b"creasemethod" => tag.creasing(mesh),
+        b"scheme" => tag.scheme(mesh),
         b"smoothtriangles" => tag.triangles(),
         b"facevaryinginterpolateboundary" | b"facevaryingpropagatecorners" => Ok(()),
         _ => Err(MeshError::UnknownTag { at: (tag.at)(), name: quote(name) }),
@@ -142,6 +144,16 @@ impl<F: Fn() -> Place> Tag<'_, F> {
             b"chaikin" => Creasing::Chaikin,
             _ => return Err(self.refuse_value("creasemethod", value, "normal or chaikin")),
         };
+        Ok(())
+    }
+
+    fn scheme(&self, mesh: &mut SubdivMesh) -> Result<(), MeshError> {
+        let Values { ints: [], floats: [], strings: [value] } = self.values else {
+            return self.expect(false, "scheme", "one string");
+        };
+        let scheme = std::str::from_utf8(value).ok().and_then(Scheme::of_name);
+        mesh.scheme =
+            scheme.ok_or_else(|| self.refuse_value("scheme", value, "catmullClark, loop, bilinear or none"))?;
         Ok(())
     }
 

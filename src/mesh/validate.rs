@@ -10,8 +10,9 @@
 //!   the first and turn its edges non-manifold.
 //! * The same edge or vertex sharpened more than once: the last one counts.
 
-use super::SubdivMesh;
 use super::error::{MeshError, Place, Spot};
+use super::polygon;
+use super::{Scheme, SubdivMesh};
 
 /// Largest number of edges at a vertex, and of vertices in a face: OpenSubdiv's `Vtr::VALENCE_LIMIT` (16-bit local
 /// indices).
@@ -84,12 +85,11 @@ impl SubdivMesh {
 }
 
 impl SubdivMesh {
-    /// The checks of [`validate`](Self::validate) that depend on where the points are.
-    ///
-    /// # Errors
-    /// The first point that is not finite or too far away.
-    pub fn validate_points(&self) -> Result<(), MeshError> {
-        check_points(self, &Source { name: &self.name, lines: None, first_vertex: 0 })
+    /// The checks of [`validate`](Self::validate) that depend on where the points are, of a mesh whose faces are valid.
+    pub(crate) fn validate_points(&self) -> Result<(), MeshError> {
+        let source = Source { name: &self.name, lines: None, first_vertex: 0 };
+        check_points(self, &source)?;
+        check_scheme(self, &source)
     }
 }
 
@@ -98,6 +98,7 @@ pub(super) fn check(mesh: &SubdivMesh, source: &Source<'_>) -> Result<(), MeshEr
     check_counts(mesh, &source.whole())?;
     check_points(mesh, source)?;
     check_faces(mesh, source)?;
+    check_scheme(mesh, source)?;
     check_duplicates(mesh, source)?;
     check_sharpness(mesh, source)?;
     check_creased_edges(mesh, source)?;
@@ -244,6 +245,22 @@ fn check_duplicates(mesh: &SubdivMesh, source: &Source<'_>) -> Result<(), MeshEr
             original: source.spot(Part::Face(pair[0].index)),
         }),
         None => Ok(()),
+    }
+}
+
+/// Whether the scheme takes all faces.
+fn check_scheme(mesh: &SubdivMesh, source: &Source<'_>) -> Result<(), MeshError> {
+    let at = |face| source.place(Part::Face(face));
+    match mesh.scheme {
+        Scheme::CatmullClark | Scheme::Bilinear => Ok(()),
+        Scheme::Loop => match mesh.face_sizes.iter().position(|&size| size != 3) {
+            Some(face) => Err(MeshError::NotTriangle { at: at(face), size: mesh.face_sizes[face] as usize }),
+            None => Ok(()),
+        },
+        Scheme::None => match mesh.faces().find(|(_, face)| !polygon::is_convex(face, &mesh.points)) {
+            Some((face, _)) => Err(MeshError::FaceConcave { at: at(face) }),
+            None => Ok(()),
+        },
     }
 }
 

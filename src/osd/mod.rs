@@ -16,7 +16,7 @@ pub use reference::{Answer, Bfr, Far, Location, Reference, ReferenceJet};
 pub use refiner::{Level, Refiner, Rule};
 pub use stencils::{LimitStencils, Stencil};
 
-use crate::mesh::{Boundary, Creasing, MeshError, SubdivMesh};
+use crate::mesh::{Boundary, Creasing, MeshError, Scheme, SubdivMesh};
 use std::ffi::CStr;
 
 /// Deepest isolation of OpenSubdiv 3.5.0: beyond it, patches are silently wrong or memory is corrupted.
@@ -67,6 +67,7 @@ struct Descriptor {
     corner_sharpness: Vec<f32>,
     holes: Vec<i32>,
     points: Vec<f64>,
+    scheme: raw::osd_scheme,
     boundary: raw::osd_boundary,
     creasing: raw::osd_creasing,
 }
@@ -84,6 +85,11 @@ impl Descriptor {
             corner_sharpness: mesh.corners.iter().map(|c| c.sharpness).collect(),
             holes: signed(&mesh.holes),
             points: mesh.points.iter().flat_map(|p| p.to_array()).collect(),
+            scheme: match mesh.scheme {
+                Scheme::CatmullClark => raw::OSD_SCHEME_CATMULL_CLARK,
+                Scheme::Loop => raw::OSD_SCHEME_LOOP,
+                Scheme::Bilinear | Scheme::None => raw::OSD_SCHEME_BILINEAR,
+            },
             boundary: match mesh.boundary {
                 Boundary::None => raw::OSD_BOUNDARY_NONE,
                 Boundary::EdgeOnly => raw::OSD_BOUNDARY_EDGE_ONLY,
@@ -111,6 +117,7 @@ impl Descriptor {
             corner_sharpness: self.corner_sharpness.as_ptr(),
             hole_count: self.holes.len() as i32,
             holes: self.holes.as_ptr(),
+            scheme: self.scheme,
             boundary: self.boundary,
             creasing: self.creasing,
         }

@@ -91,10 +91,17 @@ pub struct FarPatch {
 }
 
 impl FarPatch {
-    /// From a record of the C interface and as many points as it says.
+    /// From a record of the C interface and as many points as it says: 4, 16 or 20.
     pub(super) fn new(record: &raw::osd_far_patch, points: &[DVec3]) -> FarPatch {
         let net = match points {
             points if points.len() == 20 => FarNet::Gregory(Box::new(std::array::from_fn(|k| points[k]))),
+            // A bilinear quad is the spline whose phantom points lie beyond all four edges.
+            &[a, b, c, d] => {
+                let mut net = [DVec3::ZERO; 16];
+                [net[5], net[6], net[10], net[9]] = [a, b, c, d];
+                extrapolate(&mut net, 0b1111);
+                FarNet::BSpline(net)
+            }
             points => {
                 let mut net = std::array::from_fn(|k| points[k]);
                 extrapolate(&mut net, record.boundary);

@@ -161,7 +161,7 @@ impl Far {
     /// Gregory patch in the order of `Far::PatchDescriptor`.
     ///
     /// # Errors
-    /// OpenSubdiv reports an error.
+    /// The scheme is Loop's, or OpenSubdiv reports an error.
     pub fn patches(&self) -> Result<Vec<FarPatch>, Error> {
         let sizes = self.sizes();
         let mut records = vec![raw::osd_far_patch::default(); sizes.patches as usize];
@@ -169,6 +169,9 @@ impl Far {
         let flat: &mut [f64] = bytemuck::cast_slice_mut(&mut points);
         // SAFETY: the handle is live; the arrays are sized as it says itself.
         check(unsafe { raw::osd_far_patches(self.0.as_ptr(), records.as_mut_ptr(), flat.as_mut_ptr()) })?;
+        if records.iter().any(|record| ![4, 16, 20].contains(&record.points)) {
+            return Err(Error::OpenSubdiv("patches of triangles (the scheme loop) are not read".to_owned()));
+        }
         let mut rest = points.as_slice();
         Ok(records
             .iter()

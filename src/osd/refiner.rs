@@ -40,6 +40,8 @@ pub struct Level {
     pub face_edges: Vec<i32>,
     /// Child face at each corner, -1 where there is none.
     pub face_children: Vec<i32>,
+    /// Child of each face that has none of its vertices (Loop's scheme), -1 where there is none.
+    pub face_middles: Vec<i32>,
     /// 1 for faces without a limit surface.
     pub face_holes: Vec<u8>,
     /// The faces of each edge: the second is -1 on a boundary, both are -2 where the edge is not manifold.
@@ -203,6 +205,7 @@ impl Refiner {
             face_vertices: vec![0; corners],
             face_edges: vec![0; corners],
             face_children: vec![0; corners],
+            face_middles: vec![0; faces],
             face_holes: vec![0; faces],
             edge_faces: vec![[0; 2]; edges],
             edge_sharpness: vec![0.0; edges],
@@ -216,6 +219,7 @@ impl Refiner {
             face_vertices: out.face_vertices.as_mut_ptr(),
             face_edges: out.face_edges.as_mut_ptr(),
             face_children: out.face_children.as_mut_ptr(),
+            face_middles: out.face_middles.as_mut_ptr(),
             face_holes: out.face_holes.as_mut_ptr(),
             edge_faces: out.edge_faces.as_mut_ptr().cast(),
             edge_sharpness: out.edge_sharpness.as_mut_ptr(),

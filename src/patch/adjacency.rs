@@ -78,7 +78,8 @@ pub(super) struct PtexEdges {
 }
 
 impl PtexEdges {
-    pub fn new(control: &Level) -> Self {
+    /// `creased`: the surface has a crease along every line.
+    pub fn new(control: &Level, creased: bool) -> Self {
         let control_edges = control.edge_sharpness.len() as u32;
         let mut out = Self { control_edges, lines: control_edges, ..Self::default() };
         for face in 0..control.face_count() {
@@ -93,7 +94,7 @@ impl PtexEdges {
                     line: edge as u32,
                     from,
                     to,
-                    sharp: control.edge_sharpness[edge] >= INFINITE_SHARPNESS,
+                    sharp: creased || control.edge_sharpness[edge] >= INFINITE_SHARPNESS,
                     open: control.edge_faces[edge][0] < 0,
                 }
             };
@@ -110,7 +111,7 @@ impl PtexEdges {
                 line: spokes + (k % size) as u32,
                 from: if outwards { 0 } else { UNITS },
                 to: if outwards { UNITS } else { 0 },
-                sharp: false,
+                sharp: creased,
                 open: false,
             };
             for k in 0..size {

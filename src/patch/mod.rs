@@ -9,14 +9,18 @@
 
 mod adjacency;
 mod fan;
+mod flat;
+pub mod lattice;
+mod loop_tree;
 mod strips;
 mod tree;
+mod triangle;
 
 pub use adjacency::{Adjacency, Neighbour};
 pub use tree::PHANTOM;
 pub(crate) use tree::slot;
 
-use crate::mesh::SubdivMesh;
+use crate::mesh::{Scheme, SubdivMesh};
 use crate::osd::{INFINITE_SHARPNESS, MAX_ISOLATION, Refiner};
 
 /// Most faces round an extraordinary vertex.
@@ -80,11 +84,25 @@ impl PatchKind {
     }
 }
 
-/// One leaf of the quadtree over a ptex face; its own local (u,v) span the unit square.
+/// Where the parameters of a patch lie.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Shape {
+    /// The unit square.
+    #[default]
+    Square,
+    /// The triangle u >= 0, v >= 0, u + v <= 1 (Loop's scheme).
+    Triangle,
+    /// The same, turned by half a turn: its corner (0,0) lies at the far corner of its cell.
+    TurnedTriangle,
+}
+
+/// One leaf of the quadtree over a ptex face; its own local (u,v) span the unit square, or the half of it below its diagonal.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Patch {
     /// Ptex face that the patch lies in.
     pub ptex: u32,
+    /// Domain of its parameters.
+    pub shape: Shape,
     /// Depth in u and in v: the patch spans 2^-depth of the ptex face each way. They differ for the strips along a
     /// semi-sharp crease.
     pub depth: [u8; 2],
@@ -92,17 +110,22 @@ pub struct Patch {
     pub quadrant: bool,
     /// Position of its cell in the ptex face, in units of 2^-depth.
     pub origin: [u16; 2],
-    /// Quarter turns: local (0,0) lies at corner `rotation` of the cell (corners (0,0), (1,0), (1,1), (0,1)).
+    /// Quarter turns: local (0,0) lies at corner `rotation` of the cell (corners (0,0), (1,0), (1,1), (0,1)). Of a triangle
+    /// third turns: the corner of the triangle.
     pub rotation: u8,
     /// Rules.
     pub kind: PatchKind,
-    /// Bit e: the neighbour across local edge e (0: v=0, 1: u=1, 2: v=1, 3: u=0) is split once more.
+    /// Bit e: the neighbour across local edge e (0: v=0, 1: u=1, 2: v=1, 3: u=0; of a triangle 0: v=0, 1: u+v=1, 2: u=0) is
+    /// split once more.
     pub transition: u8,
 }
 
 impl Patch {
     /// Patch-local parameters of a point of the ptex face that lies in this patch.
     pub fn to_local(&self, [u, v]: [f64; 2]) -> [f64; 2] {
+        if self.shape != Shape::Square {
+            return self.in_triangle([u, v]);
+        }
         let scale = self.scale();
         let [u, v] = [u * scale[0] - f64::from(self.origin[0]), v * scale[1] - f64::from(self.origin[1])];
         turn_in(self.rotation, [u, v])
@@ -121,6 +144,9 @@ impl Patch {
 
     /// Ptex parameters of a patch-local point.
     pub fn to_ptex(&self, [s, t]: [f64; 2]) -> [f64; 2] {
+        if self.shape != Shape::Square {
+            return self.of_triangle([s, t]);
+        }
         let [u, v] = match self.rotation {
             0 => [s, t],
             1 => [1.0 - t, s],
@@ -159,6 +185,8 @@ pub enum Tip {
 /// starts at the patch itself, an open sector at its first sharp or boundary edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct RingClass {
+    /// Faces are triangles under Loop's rules, not quads under those of Catmull and Clark.
+    pub triangles: bool,
     /// Faces in the ring or sector.
     pub faces: u16,
     /// Goes all the way round.
@@ -194,7 +222,10 @@ impl RingClass {
     /// Grid positions of the points outside the ring, in the order in which a support lists them.
     pub fn outer(&self) -> Vec<(isize, isize)> {
         let [first, second] = self.own_spokes();
-        let mut points = vec![(2, 0), (2, 1), (2, 2), (1, 2), (0, 2)];
+        let mut points = match self.triangles {
+            true => vec![(2, 0), (1, 1), (0, 2)],
+            false => vec![(2, 0), (2, 1), (2, 2), (1, 2), (0, 2)],
+        };
         if !self.is_sharp(first) {
             points.push((2, -1));
         }
@@ -206,20 +237,22 @@ impl RingClass {
 
     /// Whether the surface has a tangent plane at the vertex (docs/LIMIT.md, section 5). Not so for rings of two faces,
     /// cones, and where directions inside a sector outgrow those along its edges: creases of five faces and more on a
-    /// side, corners of three and more. The normal there is the limit inside the patch.
+    /// side, corners of three and more; of triangles, seven and four. The normal there is the limit inside the patch.
     pub fn has_tangent_plane(&self) -> bool {
+        let [crease, corner] = if self.triangles { [7, 4] } else { [5, 3] };
         match (self.closed, self.tip) {
             (true, Tip::Smooth) => self.faces > 2,
             (true, _) => false,
-            (false, Tip::Crease) => self.faces < 5,
-            (false, _) => self.faces < 3,
+            (false, Tip::Crease) => self.faces < crease,
+            (false, _) => self.faces < corner,
         }
     }
 
-    /// Number of control points: the vertex, its spokes, the opposite corners of its faces, the outer points (2N+8 for
-    /// a smooth vertex of valence N, as in Stam 1998).
+    /// Number of control points: the vertex, its spokes, the opposite corners of its quads, the outer points (2N+8 for
+    /// a smooth vertex of valence N, as in Stam 1998; N+6 for triangles, as in Stam 1999).
     pub fn support(&self) -> usize {
-        1 + self.spokes() + usize::from(self.faces) + self.outer().len()
+        let opposite = if self.triangles { 0 } else { usize::from(self.faces) };
+        1 + self.spokes() + opposite + self.outer().len()
     }
 }
 
@@ -261,6 +294,8 @@ struct Support {
 /// The patches of a mesh and the quadtrees that find them. Topology only: control points may move without it changing.
 #[derive(Debug, Clone, Default)]
 pub struct Patches {
+    /// Patches are triangles: supports, quadtrees and parameters are those of Loop's scheme.
+    triangles: bool,
     patches: Vec<Patch>,
     supports: Vec<Support>,
     vertices: Vec<u32>,
@@ -278,7 +313,16 @@ impl Patches {
     /// # Errors
     /// OpenSubdiv refuses the mesh, or a face stays without a closed form.
     pub fn new(mesh: &SubdivMesh) -> Result<(Self, Refiner), PatchError> {
+        if mesh.scheme.is_linear() {
+            // One level, for the middles of faces that are no quads.
+            let refiner = Refiner::adaptive(mesh, 1, 1, false)?;
+            return Ok((flat::build(&refiner)?, refiner));
+        }
         let isolation = isolation(mesh);
+        if mesh.scheme == Scheme::Loop {
+            let refiner = Refiner::adaptive(mesh, isolation, RINGS_STAND_ALONE, false)?;
+            return Ok((loop_tree::build(&refiner)?, refiner));
+        }
         // Along a single crease OpenSubdiv need not refine: strips have a closed form. Should it call a crease single
         // that we do not, everything is refined.
         let refiner = Refiner::adaptive(mesh, isolation, RINGS_STAND_ALONE, true)?;
@@ -306,11 +350,12 @@ impl Patches {
         self.supports[patch].class.map(|class| class as usize)
     }
 
-    /// Refined vertices that control a patch: for a regular one the 4x4 net, u fastest, [`PHANTOM`] beyond sharp edges;
-    /// else the support of its class.
+    /// Refined vertices that control a patch: for a regular one the 4x4 net, u fastest, or the 12 points of a box spline
+    /// ([`stam::box_spline`](crate::stam::box_spline)), [`PHANTOM`] beyond sharp edges; else the support of its class.
     pub fn support(&self, patch: usize) -> &[u32] {
         let Support { first, class, .. } = self.supports[patch];
-        let length = class.map_or(16, |class| self.classes[class as usize].support());
+        let regular = if self.triangles { lattice::NET.len() } else { 16 };
+        let length = class.map_or(regular, |class| self.classes[class as usize].support());
         &self.vertices[first as usize..first as usize + length]
     }
 
@@ -325,12 +370,18 @@ impl Patches {
         self.supports[patch].rows.map(|rows| &self.row_weights[rows as usize])
     }
 
+    /// Whether patches are triangles, under Loop's scheme.
+    pub fn are_triangles(&self) -> bool {
+        self.triangles
+    }
+
     /// Number of ptex faces, holes included.
     pub fn ptex_count(&self) -> usize {
         self.roots.len()
     }
 
-    /// The patch at (u,v), each 0 to 1, of a ptex face, and the patch-local parameters; `None` in a hole.
+    /// The patch at (u,v), each 0 to 1, of a ptex face, and the patch-local parameters; `None` in a hole. Of a triangle, u + v
+    /// is at most 1.
     ///
     /// # Panics
     /// `ptex` is not below [`ptex_count`](Self::ptex_count).
@@ -346,6 +397,11 @@ impl Patches {
                     let [_, across] = turn_in(rotation, [u, v]);
                     let strip = (1..u32::from(count)).find(|&i| across >= 0.5f64.powi(i as i32));
                     break Some(first + strip.map_or(u32::from(count), |i| i) - 1);
+                }
+                Node::Split(children) if self.triangles => {
+                    let (child, inside) = triangle::quarter([u, v]);
+                    [u, v] = inside;
+                    node = self.splits[children as usize][child];
                 }
                 Node::Split(children) => {
                     let [right, up] = [u >= 0.5, v >= 0.5];

@@ -3,7 +3,7 @@
 use super::adjacency::PtexEdges;
 use super::fan::Fan;
 use super::strips;
-use super::{MAX_VALENCE, Node, Patch, PatchError, PatchKind, Patches, RingClass, Strips, Support, Tip};
+use super::{MAX_VALENCE, Node, Patch, PatchError, PatchKind, Patches, RingClass, Shape, Strips, Support, Tip};
 use crate::osd::{INFINITE_SHARPNESS, Level, Refiner, Rule};
 use std::collections::HashMap;
 
@@ -66,7 +66,7 @@ pub(super) fn build(refiner: &Refiner) -> Result<Patches, PatchError> {
     };
     walk.roots()?;
     walk.mark_transitions();
-    walk.out.ptex_edges = PtexEdges::new(&walk.levels[0]);
+    walk.out.ptex_edges = PtexEdges::new(&walk.levels[0], false);
     Ok(walk.out)
 }
 
@@ -159,6 +159,7 @@ impl Walk {
         self.out.supports.push(support);
         Some(Patch {
             ptex: cell.ptex,
+            shape: Shape::Square,
             depth: [cell.depth; 2],
             quadrant: level > usize::from(cell.depth),
             origin: cell.origin,
@@ -218,6 +219,7 @@ impl Walk {
             self.out.supports.push(Support { rows: Some(first_rows + u32::from(strip)), ..support });
             self.out.patches.push(Patch {
                 ptex: cell.ptex,
+                shape: Shape::Square,
                 depth,
                 quadrant: level > usize::from(cell.depth),
                 origin,
@@ -320,7 +322,7 @@ fn place(grid: &mut [u32; 16], fan: &Fan, corner: usize, global: impl Fn(usize) 
     }
 }
 
-fn kind_of(fan: &Fan) -> Option<PatchKind> {
+pub(super) fn kind_of(fan: &Fan) -> Option<PatchKind> {
     match (fan.rule?, fan.closed) {
         (Rule::Smooth, true) => Some(PatchKind::Smooth),
         (Rule::Dart, true) => Some(PatchKind::Dart),
@@ -331,7 +333,7 @@ fn kind_of(fan: &Fan) -> Option<PatchKind> {
 }
 
 impl RingClass {
-    fn new(fan: &Fan) -> Self {
+    pub(super) fn new(fan: &Fan) -> Self {
         let tip = match fan.rule {
             Some(Rule::Crease) => Tip::Crease,
             Some(Rule::Corner) => Tip::Corner,
@@ -339,6 +341,7 @@ impl RingClass {
         };
         let dart = fan.closed.then(|| fan.sharpness.iter().position(|&s| s >= INFINITE_SHARPNESS)).flatten();
         Self {
+            triangles: false,
             faces: fan.faces() as u16,
             closed: fan.closed,
             index: fan.index as u16,

@@ -15,7 +15,8 @@
 //! # Practice
 //! [`ClassTable::new`] builds the matrices of one class; patches of the class share them.
 
-use super::Window;
+use super::loop_modes;
+use super::loop_rows::LoopRows;
 use super::modes::Modes;
 use super::rows::{Row, Rows};
 use super::surface::combine;
@@ -25,7 +26,8 @@ use glam::DVec3;
 /// Levels kept in f64: the smallest u or v above zero that doubles near 1 resolve.
 pub const LEVELS: usize = 52;
 
-/// Points of the three windows of a level: a 5x5 grid without its corner at (-1,-1).
+/// Points of the three windows of a level of quads: a 5x5 grid without its corner at (-1,-1). Of triangles they are those of
+/// [`LOOP_WINDOW`](super::LOOP_WINDOW).
 pub const WINDOW_POINTS: usize = 24;
 
 /// Faces up to which a class keeps its matrices: their memory is 20 kB a face, and a sector of k faces has k classes.
@@ -49,18 +51,23 @@ pub struct ClassTable {
     step: Vec<Row>,
     /// A': the window points of the next level.
     windows: Vec<Row>,
-    /// Mhat(n) at `levels[n-1]`, [`WINDOW_POINTS`] rows of K weights: Phat(n) = Mhat(n) C. Empty for large classes.
+    /// Mhat(n) at `levels[n-1]`, a row of K weights for each window point: Phat(n) = Mhat(n) C. Empty for large classes.
     levels: Vec<Vec<f64>>,
 }
 
 impl ClassTable {
     /// Builds the matrices of a class.
     pub fn new(class: RingClass) -> Self {
-        let rows = Rows::new(class);
-        let step = rows.step();
+        let (step, windows, modes) = if class.triangles {
+            let rows = LoopRows::new(class);
+            (rows.step(), rows.windows(), loop_modes::modes(class))
+        } else {
+            let rows = Rows::new(class);
+            let windows = (1..=WINDOW_POINTS as isize).map(|k| rows.refined(k % 5 - 1, k / 5 - 1)).collect();
+            (rows.step(), windows, Modes::of(class))
+        };
         let limit = left_eigenvector_of_one(&step);
-        let Modes { lambda, tangents, spare } = Modes::of(class);
-        let windows: Vec<Row> = (1..=WINDOW_POINTS as isize).map(|k| rows.refined(k % 5 - 1, k / 5 - 1)).collect();
+        let Modes { lambda, tangents, spare } = modes;
         let mut table = Self { lambda, limit, tangents, spare, step, windows, levels: Vec::new() };
         if class.faces <= KEPT_FACES {
             table.levels = table.matrices();
@@ -97,7 +104,7 @@ impl ClassTable {
         Some(&self.levels.get(level - 1)?[point * size..(point + 1) * size])
     }
 
-    /// Phat(n) for n = `level`, 1 to [`LEVELS`], from control points relative to the limit position s0.
+    /// Phat(n) of a class of quads for n = `level`, 1 to [`LEVELS`], from control points relative to the limit position s0.
     pub fn level_points(&self, level: usize, points: &[DVec3]) -> [DVec3; WINDOW_POINTS] {
         if self.levels.is_empty() {
             return self.windows_of(&self.stepped(level, points));
@@ -107,18 +114,20 @@ impl ClassTable {
         std::array::from_fn(|point| combine(&rows[point * size..(point + 1) * size], points))
     }
 
-    /// The 16 points of one window of a level.
-    pub(super) fn window_points(&self, level: usize, window: &Window, points: &[DVec3]) -> [DVec3; 16] {
+    /// The points of one window of a level, which are those numbered `point(k)` among all of it.
+    pub(super) fn window_points<const N: usize>(
+        &self,
+        level: usize,
+        point: impl Fn(usize) -> usize,
+        points: &[DVec3],
+    ) -> [DVec3; N] {
         if self.levels.is_empty() {
             let stepped = self.stepped(level, points);
-            return std::array::from_fn(|k| sparse(&self.windows[window.point(k)], &stepped));
+            return std::array::from_fn(|k| sparse(&self.windows[point(k)], &stepped));
         }
         let size = self.limit.len();
         let rows = &self.levels[level - 1];
-        std::array::from_fn(|k| {
-            let point = window.point(k);
-            combine(&rows[point * size..(point + 1) * size], points)
-        })
+        std::array::from_fn(|k| combine(&rows[point(k) * size..(point(k) + 1) * size], points))
     }
 
     /// (B / lambda)^(level - 1) C.
@@ -170,8 +179,8 @@ pub(super) fn deflated_step(row: &[f64], step: &[Row], limit: &[f64], lambda: f6
     out
 }
 
-/// l0 with l0 A = l0 and sum 1, by power iteration: the other eigenvalues are at most (6 + sqrt 20) / 16 = 0.655, so 128
-/// steps leave 1e-23.
+/// l0 with l0 A = l0 and sum 1, by power iteration: the other eigenvalues are at most (6 + sqrt 20) / 16 = 0.655, of
+/// triangles 5/8, so 128 steps leave 1e-23.
 fn left_eigenvector_of_one(step: &[Row]) -> Vec<f64> {
     let mut limit = vec![0.0; step.len()];
     limit[0] = 1.0;
@@ -187,12 +196,25 @@ fn left_eigenvector_of_one(step: &[Row]) -> Vec<f64> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::patch::Tip;
 
+    /// Largest eigenvalue of B in absolute value, by power iteration from a vector without symmetry.
+    pub(in crate::stam) fn iterated_eigenvalue(step: &[Row], limit: &[f64]) -> f64 {
+        let mut vector: Vec<f64> = (0..step.len()).map(|k| (0.7 * k as f64).sin()).collect();
+        let mut eigenvalue = 0.0;
+        for _ in 0..2000 {
+            let next = deflated_step(&vector, step, limit, 1.0);
+            let [length, before] = [&next, &vector].map(|x| x.iter().map(|x| x * x).sum::<f64>().sqrt());
+            eigenvalue = length / before;
+            vector = next.into_iter().map(|x| x / length).collect();
+        }
+        eigenvalue
+    }
+
     fn class(faces: u16, closed: bool, tip: Tip, sharp_spoke: Option<u16>) -> RingClass {
-        RingClass { faces, closed, index: 0, tip, sharp_spoke }
+        RingClass { triangles: false, faces, closed, index: 0, tip, sharp_spoke }
     }
 
     #[test]

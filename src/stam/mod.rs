@@ -3,11 +3,15 @@
 //! A [`LimitSurface`] holds the patches of a mesh, their control points and the [class tables](ClassTable), and
 //! evaluates position, derivatives and normal anywhere.
 
+pub mod box_spline;
 mod bspline;
 mod class;
 mod curvature;
 mod evaluate;
 mod instances;
+mod loop_modes;
+mod loop_rows;
+mod loop_surface;
 mod modes;
 mod moving;
 mod rings;
@@ -16,6 +20,8 @@ mod surface;
 
 pub use class::{ClassTable, LEVELS, WINDOW_POINTS};
 pub use curvature::Curvature;
+pub use loop_rows::LOOP_WINDOW;
+pub use loop_surface::LoopWindow;
 pub use moving::{MoveError, MovingSurface};
 pub use rings::{Grid, Rings, WINDOWS};
 pub use surface::{LimitSurface, Net};

@@ -202,24 +202,11 @@ fn even_dart(class: RingClass, sharp: usize) -> (f64, Vec<f64>) {
 mod tests {
     use super::*;
     use crate::stam::ClassTable;
-    use crate::stam::class::deflated_step;
-    use crate::stam::rows::{Row, Rows};
-
-    /// Largest eigenvalue of B in absolute value, by power iteration from a vector without symmetry.
-    fn iterated_eigenvalue(step: &[Row], limit: &[f64]) -> f64 {
-        let mut vector: Vec<f64> = (0..step.len()).map(|k| (0.7 * k as f64).sin()).collect();
-        let mut eigenvalue = 0.0;
-        for _ in 0..2000 {
-            let next = deflated_step(&vector, step, limit, 1.0);
-            let [length, before] = [&next, &vector].map(|x| x.iter().map(|x| x * x).sum::<f64>().sqrt());
-            eigenvalue = length / before;
-            vector = next.into_iter().map(|x| x / length).collect();
-        }
-        eigenvalue
-    }
+    use crate::stam::class::{deflated_step, tests::iterated_eigenvalue};
+    use crate::stam::rows::Rows;
 
     fn class(faces: u16, closed: bool, tip: Tip, sharp_spoke: Option<u16>) -> RingClass {
-        RingClass { faces, closed, index: 0, tip, sharp_spoke }
+        RingClass { triangles: false, faces, closed, index: 0, tip, sharp_spoke }
     }
 
     #[test]

@@ -66,13 +66,14 @@ impl MovingSurface {
     /// What makes it another surface, as the subject of a sentence.
     fn difference(&self, mesh: &SubdivMesh) -> Option<&'static str> {
         let topology = &self.topology;
+        let rules = |mesh: &SubdivMesh| (mesh.scheme, mesh.boundary, mesh.creasing);
         let same = [
             (mesh.points.len() == self.vertices, "numbers of points"),
             (mesh.face_sizes == topology.face_sizes && mesh.face_vertices == topology.face_vertices, "faces"),
             (mesh.creases == topology.creases, "creases"),
             (mesh.corners == topology.corners, "sharp vertices"),
             (mesh.holes == topology.holes, "holes"),
-            (mesh.boundary == topology.boundary && mesh.creasing == topology.creasing, "subdivision rules"),
+            (rules(mesh) == rules(topology), "subdivision rules"),
         ];
         same.into_iter().find_map(|(same, what)| (!same).then_some(what))
     }

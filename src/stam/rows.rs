@@ -12,23 +12,27 @@ pub(super) struct Rows {
     size: usize,
 }
 
+/// A weighted sum of rows.
+pub(super) fn sum(terms: &[(f64, &Row)]) -> Row {
+    let mut all: Row = terms.iter().flat_map(|(factor, row)| row.iter().map(move |&(k, w)| (k, factor * w))).collect();
+    all.sort_unstable_by_key(|&(k, _)| k);
+    all.dedup_by(|next, kept| {
+        let same = next.0 == kept.0;
+        if same {
+            kept.1 += next.1;
+        }
+        same
+    });
+    all
+}
+
 impl Rows {
     pub fn new(class: RingClass) -> Self {
         Self { class, outer: class.outer(), size: class.support() }
     }
 
     fn sum(&self, terms: &[(f64, &Row)]) -> Row {
-        let mut all: Row =
-            terms.iter().flat_map(|(factor, row)| row.iter().map(move |&(k, w)| (k, factor * w))).collect();
-        all.sort_unstable_by_key(|&(k, _)| k);
-        all.dedup_by(|next, kept| {
-            let same = next.0 == kept.0;
-            if same {
-                kept.1 += next.1;
-            }
-            same
-        });
-        all
+        sum(terms)
     }
 
     fn average(&self, rows: &[Row]) -> Row {

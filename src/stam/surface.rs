@@ -173,6 +173,24 @@ impl LimitSurface {
         self.patches.support(self.stored(patch).0)
     }
 
+    /// Whether patches are triangles, under Loop's scheme.
+    pub fn has_triangles(&self) -> bool {
+        self.patches.are_triangles()
+    }
+
+    /// A net of stored points, moved to where the patch is.
+    pub(super) fn moved_from_stored<const N: usize>(&self, patch: usize, net: [DVec3; N]) -> [DVec3; N] {
+        match self.stored(patch).1 {
+            Some(transform) => net.map(|point| transform.transform_point3(point)),
+            None => net,
+        }
+    }
+
+    /// A refined point, where it is stored.
+    pub(super) fn refined_point(&self, vertex: u32) -> DVec3 {
+        self.points[vertex as usize]
+    }
+
     /// The same patches over other refined points, those of all levels.
     pub(crate) fn with_refined(&self, points: Vec<DVec3>) -> Self {
         Self { points: Arc::new(points), ..self.clone() }

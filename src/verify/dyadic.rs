@@ -33,11 +33,30 @@ fn parameters(depth: u32) -> Vec<[f64; 2]> {
     out
 }
 
+/// The same on a triangle.
+fn triangle_parameters(depth: u32) -> Vec<[f64; 2]> {
+    let quarters = (0..25).map(|i| [f64::from(i % 5) / 4.0, f64::from(i / 5) / 4.0]);
+    let mut out: Vec<_> = quarters.filter(|[u, v]| u + v <= 1.0).collect();
+    for k in 3..=depth as i32 {
+        let near = 2f64.powi(-k);
+        for [u, v] in [[near, 0.0], [0.0, near], [near, near]] {
+            let w = 1.0 - u - v;
+            out.extend([[u, v], [w, u], [v, w]]);
+        }
+    }
+    out
+}
+
 pub(super) fn run(subject: &Subject<'_>, references: &References, bins: &mut Bins) -> Result<(), VerifyError> {
     // The quadrants of an n-gon are quads of level 1 already: isolation 10 splits them 9 times.
     let [quad, quadrant] = [parameters(MAX_ISOLATION), parameters(MAX_ISOLATION - 1)];
-    let sizes = subject.mesh.face_sizes.iter();
-    let grids: Vec<_> = sizes.flat_map(|&n| if n == 4 { vec![&quad] } else { vec![&quadrant; n as usize] }).collect();
+    let triangle = triangle_parameters(MAX_ISOLATION);
+    let grids_of = |&size: &u32| match (subject.surface.has_triangles(), size) {
+        (true, _) => vec![&triangle],
+        (false, 4) => vec![&quad],
+        (false, size) => vec![&quadrant; size as usize],
+    };
+    let grids: Vec<_> = subject.mesh.face_sizes.iter().flat_map(grids_of).collect();
     let faces = subject.faces(quad.len(), BUDGET);
     let samples: Vec<Location> =
         faces.flat_map(|face| grids[face as usize].iter().map(move |&[u, v]| (face, u, v))).collect();

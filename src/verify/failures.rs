@@ -55,7 +55,10 @@ pub struct FailedPatch {
 
 /// Face of the control mesh of each ptex face.
 pub(super) fn control_faces(mesh: &SubdivMesh) -> Vec<u32> {
-    let ptex = |(face, &size): (usize, &u32)| std::iter::repeat_n(face as u32, mesh.ptex_faces_of(size) as usize);
+    let ptex = |(face, &size): (usize, &u32)| {
+        let count = mesh.ptex_faces_of(size as usize);
+        std::iter::repeat_n(face as u32, count)
+    };
     mesh.face_sizes.iter().enumerate().flat_map(ptex).collect()
 }
 

@@ -67,7 +67,8 @@ pub(super) fn run(subject: &Subject<'_>, bins: &mut Bins) -> Result<(), VerifyEr
             Some(_) => 2.0 * traits.reach[vertex] / rounding.unit + rounding.position(),
         };
         let normal = match last.vertex_rules[vertex] {
-            Rule::Smooth if known_wrong.is_none() => {
+            // Where faces stay flat, each has a normal of its own.
+            Rule::Smooth if known_wrong.is_none() && !subject.mesh.scheme.is_linear() => {
                 // Tangent masks are cosines times at most 4 + 2 x 1.6 for each face, on average 2/pi of that.
                 let weights = 5.0 * f64::from(traits.valence[vertex]);
                 let turn = rounding::turn_deg(first[vertex], second[vertex], weights * rounding.point);
@@ -129,7 +130,15 @@ fn locations(levels: &[Level]) -> Vec<(usize, Sample)> {
 /// Calls `see` with every corner of every face of the last level that has a surface.
 fn visit(levels: &[Level], see: &mut dyn FnMut(usize, Sample)) {
     let mut ptex = 0;
+    let triangles = levels[0].face_middles.iter().any(|&middle| middle >= 0);
     for face in 0..levels[0].face_count() {
+        if triangles {
+            let face = face as u32;
+            descend_triangle(levels, 0, face as usize, [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], &mut |vertex, [u, v]| {
+                see(vertex, Sample { face, u, v });
+            });
+            continue;
+        }
         let corners = levels[0].corners(face);
         if corners.len() == 4 {
             descend(levels, 0, face, Sample { face: ptex, u: 0.0, v: 0.0 }, 1.0, see);
@@ -159,6 +168,31 @@ fn descend(levels: &[Level], level: usize, face: usize, at: Sample, size: f64, s
             let origin = Sample { u: at.u + du * half, v: at.v + dv * half, ..at };
             descend(levels, level + 1, topology.face_children[i] as usize, origin, half, see);
         }
+    }
+}
+
+/// The same for triangles, with the parameters of the corners.
+fn descend_triangle(
+    levels: &[Level],
+    level: usize,
+    face: usize,
+    corners: [[f64; 2]; 3],
+    see: &mut dyn FnMut(usize, [f64; 2]),
+) {
+    let topology = &levels[level];
+    if topology.face_holes[face] != 0 {
+        return;
+    }
+    let own = topology.corners(face);
+    if level + 1 == levels.len() {
+        own.zip(corners).for_each(|(i, at)| see(topology.face_vertices[i] as usize, at));
+        return;
+    }
+    let middle = |i: usize, j: usize| [0, 1].map(|k| 0.5 * (corners[i][k] + corners[j][k]));
+    let ([a, b, c], [ab, bc, ca]) = (corners, [middle(0, 1), middle(1, 2), middle(2, 0)]);
+    let children = own.map(|i| topology.face_children[i]).chain([topology.face_middles[face]]);
+    for (child, corners) in children.zip([[a, ab, ca], [ab, b, bc], [ca, bc, c], [bc, ca, ab]]) {
+        descend_triangle(levels, level + 1, child as usize, corners, see);
     }
 }
 

@@ -183,6 +183,6 @@ pub fn mesh(seed: u64) -> SubdivMesh {
         holes,
         boundary: [Boundary::None, Boundary::EdgeOnly, Boundary::EdgeAndCorner, Boundary::EdgeAndCorner][rng.below(4)],
         creasing: if rng.chance(0.35) { Creasing::Chaikin } else { Creasing::Uniform },
-        up: None,
+        ..SubdivMesh::default()
     }
 }

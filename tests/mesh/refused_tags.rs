@@ -124,7 +124,7 @@ fn an_unknown_tag() {
     assert_eq!(
         refused("t craese 2/1/0 0 1 3"),
         "tag 'craese' is unknown; \
-         use crease, corner, hole, interpolateboundary or creasemethod"
+         use crease, corner, hole, interpolateboundary, creasemethod or scheme"
     );
 }
 

@@ -32,12 +32,13 @@ fn eval_info_and_verify_read_usd() {
 #[test]
 fn what_is_refused_ends_with_two() {
     let folder = tempfile::tempdir().expect("a temporary folder");
-    let text = prim("m", &format!("{SQUARE}uniform token subdivisionScheme = \"loop\""));
+    let text = prim("m", &format!("{SQUARE}uniform token subdivisionScheme = \"doo\""));
     fs::write(folder.path().join("mesh.usda"), HEADER.to_owned() + &text).expect("a file");
     let told = run(folder.path(), &["info", "mesh.usda"]);
     let message = String::from_utf8_lossy(&told.stderr);
     assert_eq!(told.status.code(), Some(2));
-    assert_eq!(message, "catoptric: mesh.usda: /m: subdivisionScheme loop is not evaluated so far; use catmullClark\n");
+    let expected = "subdivisionScheme 'doo' is none of USD's; use catmullClark, loop, bilinear or none";
+    assert_eq!(message, format!("catoptric: mesh.usda: /m: {expected}\n"));
 }
 
 /// Where the stage has Y up, views do; a flag counts before that.

@@ -7,13 +7,29 @@ fn with(more: &str) -> String {
 }
 
 #[test]
-fn schemes_that_are_not_evaluated() {
-    for scheme in ["loop", "bilinear", "none", "doo"] {
-        assert_eq!(
-            with(&format!("uniform token subdivisionScheme = \"{scheme}\"")),
-            format!("mesh.usda: /m: subdivisionScheme {scheme} is not evaluated so far; use catmullClark")
-        );
-    }
+fn schemes_that_usd_does_not_have() {
+    assert_eq!(
+        with("uniform token subdivisionScheme = \"doo\""),
+        "mesh.usda: /m: subdivisionScheme 'doo' is none of USD's; use catmullClark, loop, bilinear or none"
+    );
+}
+
+#[test]
+fn faces_that_a_scheme_does_not_take() {
+    assert_eq!(
+        with("uniform token subdivisionScheme = \"loop\""),
+        "mesh.usda: /m, face 0: a face with 4 vertices, but the scheme loop takes triangles; \
+         triangulate it, or use catmullClark"
+    );
+}
+
+#[test]
+fn meshes_of_two_schemes() {
+    let flat = format!("{SQUARE}uniform token subdivisionScheme = \"bilinear\"");
+    assert_eq!(
+        refusal(&(prim("m", SQUARE) + &prim("n", &flat))),
+        "mesh.usda: /n: subdivisionScheme bilinear, but other meshes have catmullClark, and a scene has one; make them agree"
+    );
 }
 
 #[test]

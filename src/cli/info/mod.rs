@@ -49,6 +49,7 @@ struct Info {
     semi_sharp_vertices: usize,
     largest_finite_sharpness: f32,
     holes: usize,
+    scheme: &'static str,
     boundary: &'static str,
     creasing: &'static str,
     /// Patches by kind.
@@ -89,6 +90,8 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), Failure> {
     let control = Refiner::uniform(&mesh, 1).and_then(|r| r.level(0)).map_err(|e| Failure::of(&mesh, e))?;
     let mut info = collect(&mesh, &surface, &control);
     let deepest = args.levels.unwrap_or(if mesh.face_count() <= MANY_FACES { MAX_ISOLATION } else { 3 });
+    // OpenSubdiv's patches of triangles are not read, and there are no tables of them.
+    let deepest = if surface.has_triangles() { 0 } else { deepest };
     let levels = (1..=deepest).map(|level| AdaptiveLevel::new(&mesh, &surface, level));
     info.opensubdiv = levels.collect::<Result<_, _>>().map_err(|e| Failure::of(&mesh, e))?;
     let text = if args.json {
@@ -100,6 +103,7 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), Failure> {
 }
 
 fn collect(mesh: &SubdivMesh, surface: &LimitSurface, control: &Level) -> Info {
+    let triangles = surface.has_triangles();
     let mut info = Info {
         mesh: mesh.name.clone(),
         meters_per_unit: mesh.meters_per_unit,
@@ -113,11 +117,13 @@ fn collect(mesh: &SubdivMesh, surface: &LimitSurface, control: &Level) -> Info {
         classes: surface.classes().len(),
         stored_patches: surface.stored_patches(),
         class_table_bytes: surface.tables().iter().map(|table| table.bytes()).sum(),
-        gpu_table_bytes: gpu::tables::bytes(surface, gpu::TableLayout::Auto),
+        gpu_table_bytes: if triangles { 0 } else { gpu::tables::bytes(surface, gpu::TableLayout::Auto) },
         gpu_table_bytes_by_layout: gpu::TableLayout::ALL
             .iter()
+            .filter(|_| !triangles)
             .map(|&layout| (layout.to_string(), gpu::tables::bytes(surface, layout)))
             .collect(),
+        scheme: mesh.scheme.name(),
         boundary: match mesh.boundary {
             Boundary::None => "none",
             Boundary::EdgeOnly => "edge only",
@@ -239,6 +245,7 @@ fn describe(info: &Info) -> String {
         ("edges", edges),
         ("semi-sharp vertices", info.semi_sharp_vertices.to_string()),
         ("largest finite sharpness", info.largest_finite_sharpness.to_string()),
+        ("scheme", info.scheme.to_owned()),
         ("boundary rule", info.boundary.to_owned()),
         ("creasing rule", info.creasing.to_owned()),
         ("patches", format!("{} (all exact)", list(&info.patches))),

@@ -154,7 +154,7 @@ pub(super) fn run(args: &LinesArgs) -> Result<(), Failure> {
     args.output.iter().try_for_each(|path| files.write(path, "-o", "the curves"))?;
     args.rig.check_apart(&mut files)?;
     let bar = progress("tracing".to_owned());
-    let mesh = account.time("read", || args.scene.load(args.mesh.as_deref()))?;
+    let mesh = account.time("read", || args.scene.load_quads(args.mesh.as_deref(), "lines"))?;
     let surface =
         account.time("patches and classes", || LimitSurface::new(&mesh)).map_err(|e| Failure::of(&mesh, e))?;
     let scout = account.time("fit", || Scout::new(&surface)).ok_or_else(|| {

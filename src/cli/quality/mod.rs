@@ -168,7 +168,7 @@ pub(super) fn run(args: &QualityArgs) -> Result<(), Failure> {
     args.check_files(&rig)?;
     let pattern = rig.pattern.read(&rig.method()).map_err(Failure::Bad)?;
     let bar = progress("measuring".to_owned());
-    let mesh = account.time("read", || args.scene.load(args.mesh.as_deref()))?;
+    let mesh = account.time("read", || args.scene.load_quads(args.mesh.as_deref(), "quality"))?;
     let surface =
         account.time("patches and classes", || LimitSurface::new(&mesh)).map_err(|e| Failure::of(&mesh, e))?;
     let scout = account.time("fit", || Scout::new(&surface)).ok_or_else(|| {

@@ -88,7 +88,7 @@ fn answer(columns: &Columns, row: &StringRecord, faces: usize) -> Result<Answer,
         Err(_) => Err(format!("{name} = '{x}' is not a number; correct it")),
     });
     let (u, v) = (u?, v?);
-    check_place((face, u, v), faces)?;
+    check_place((face, u, v), faces, false)?;
     let number = |i: usize| match row[i].trim() {
         "" => Ok(f64::NAN),
         x => x.parse().map_err(|_| format!("'{x}' is not a number; write one, or nothing where there is no answer")),

@@ -2,6 +2,7 @@
 
 use super::super::{Failure, args::VerifyArgs, rows::shortest, write_out};
 use super::{answers, inputs::Input, write_files};
+use crate::mesh::Scheme;
 use crate::output::write_whole;
 use crate::stam::LimitSurface;
 use crate::verify::conformance::{DEFAULT_PER_FACE, Terms, Tolerances, conformance, sample_set};
@@ -66,6 +67,10 @@ pub(super) fn run(args: &VerifyArgs, inputs: &[Input]) -> Result<(), Failure> {
     };
     let per_face = args.conformance.samples as usize;
     let mesh = input.mesh().map_err(Failure::Bad)?;
+    if mesh.scheme == Scheme::Loop {
+        let reason = "the scheme loop has no standard samples so far; use catmullClark";
+        return Err(Failure::of(&mesh, reason));
+    }
     if let Some(path) = &args.conformance.samples_out {
         let surface = LimitSurface::new(&mesh).map_err(|error| Failure::of(&mesh, error))?;
         return write_samples(path, &surface, per_face);

@@ -6,8 +6,10 @@ mod inputs;
 mod many;
 
 use super::args::VerifyArgs;
+use super::rows::check_place;
 use super::{Failure, write_out};
 use crate::gpu::Gpu;
+use crate::mesh::Scheme;
 use crate::osd::Location;
 use crate::output::check_writable;
 use crate::page::{Pictures, page};
@@ -103,6 +105,8 @@ fn one(args: &VerifyArgs, inputs: &[Input], (face, u, v): Location) -> Result<()
         return Err(Failure::Bad(format!("--only takes one mesh, not {}; name it", inputs.len())));
     };
     let mesh = input.mesh().map_err(Failure::Bad)?;
+    check_place((face, u, v), mesh.ptex_count(), mesh.scheme == Scheme::Loop)
+        .map_err(|what| Failure::of_input(input, format!("--only: {what}")))?;
     // Without an adapter the shader is left out: what f64 and OpenSubdiv say does not need it.
     let gpu = Gpu::new().ok();
     let shown = only(&mesh, gpu.as_ref(), Sample { face, u, v }, args.plant)

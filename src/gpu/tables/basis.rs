@@ -113,7 +113,14 @@ mod tests {
     use crate::patch::{RingClass, Tip};
 
     fn classes() -> Vec<RingClass> {
-        let class = |faces, closed, index, tip, sharp_spoke| RingClass { faces, closed, index, tip, sharp_spoke };
+        let class = |faces, closed, index, tip, sharp_spoke| RingClass {
+            triangles: false,
+            faces,
+            closed,
+            index,
+            tip,
+            sharp_spoke,
+        };
         let smooth = (2..=16).map(|n| class(n, true, 0, Tip::Smooth, None));
         let darts = (0..5).map(|spoke| class(5, true, 0, Tip::Smooth, Some(spoke)));
         let sectors = [1, 3, 4, 6].into_iter().flat_map(|k| {

@@ -6,7 +6,7 @@ use super::instances;
 use super::scene::Placed;
 use super::value::Node;
 use crate::mesh::validate::{Source, check};
-use crate::mesh::{Boundary, Corner, Crease, MeshError, SubdivMesh};
+use crate::mesh::{Boundary, Corner, Crease, MeshError, Scheme, SubdivMesh};
 
 /// Whether the prim has no faces at all.
 pub(super) fn is_empty(node: &Node<'_>) -> Result<bool, MeshError> {
@@ -29,7 +29,6 @@ pub(super) struct Unplaced {
 
 /// Reads the mesh. What is wrong with faces and points shows when it is placed.
 pub(super) fn read(node: &Node<'_>) -> Result<Unplaced, MeshError> {
-    scheme(node)?;
     let mesh = SubdivMesh {
         name: node.source.to_owned(),
         points: node.required("points", node.points("points")?)?,
@@ -38,6 +37,7 @@ pub(super) fn read(node: &Node<'_>) -> Result<Unplaced, MeshError> {
         creases: creases(node)?,
         corners: corners(node)?,
         holes: node.indices("holeIndices")?.unwrap_or_default(),
+        scheme: scheme(node)?,
         boundary: boundary(node)?,
         ..SubdivMesh::default()
     };
@@ -67,11 +67,9 @@ impl Unplaced {
     }
 }
 
-fn scheme(node: &Node<'_>) -> Result<(), MeshError> {
-    match node.token("subdivisionScheme")?.as_deref() {
-        None | Some("catmullClark") => Ok(()),
-        Some(scheme) => Err(MeshError::SchemeUnsupported { at: node.place(), scheme: scheme.to_owned() }),
-    }
+fn scheme(node: &Node<'_>) -> Result<Scheme, MeshError> {
+    let Some(name) = node.token("subdivisionScheme")? else { return Ok(Scheme::CatmullClark) };
+    Scheme::of_name(&name).ok_or_else(|| MeshError::SchemeUnknown { at: node.place(), scheme: name })
 }
 
 fn refused(node: &Node<'_>, name: &'static str, value: &str, expected: &'static str) -> MeshError {
@@ -101,7 +99,7 @@ fn triangle_rule(node: &Node<'_>, mesh: &SubdivMesh) -> Result<(), MeshError> {
     let name = "triangleSubdivisionRule";
     match node.token(name)?.as_deref() {
         None | Some("catmullClark") => Ok(()),
-        Some("smooth") if !mesh.face_sizes.contains(&3) => Ok(()),
+        Some("smooth") if mesh.scheme != Scheme::CatmullClark || !mesh.face_sizes.contains(&3) => Ok(()),
         Some(other) => Err(refused(node, name, other, "catmullClark, or smooth for meshes without triangles")),
     }
 }

@@ -18,13 +18,19 @@ const INFINITE: f32 = 10.0;
 /// one of `EdgeOnly`; meshes without a boundary go with either.
 ///
 /// # Errors
-/// A mesh whose boundary is not interpolated beside one whose is, and more points or faces than OpenSubdiv counts.
+/// Meshes of two schemes, a mesh whose boundary is not interpolated beside one whose is, and more points or faces than
+/// OpenSubdiv counts.
 pub(super) fn join(meshes: Vec<Placed>, file: &str, name: &str) -> Result<SubdivMesh, MeshError> {
     let mut scene = SubdivMesh { name: name.to_owned(), ..SubdivMesh::default() };
     scene.boundary = match &meshes[..] {
         [one] => one.mesh.boundary,
         _ => common_rule(&meshes)?,
     };
+    scene.scheme = meshes.first().map_or_else(Default::default, |first| first.mesh.scheme);
+    if let Some(Placed { mesh, .. }) = meshes.iter().find(|placed| placed.mesh.scheme != scene.scheme) {
+        let (first, found) = (scene.scheme.name(), mesh.scheme.name());
+        return Err(MeshError::SchemeMixed { at: Place::with(&mesh.name, Spot::Whole), first, found });
+    }
     let mut originals = Originals::default();
     for Placed { name, mut mesh, world, digest } in meshes {
         let before = Extent::of(&scene);
