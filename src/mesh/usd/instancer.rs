@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use glam::{DMat4, DVec3};
+use glam::{DMat3, DMat4, DVec3};
 use openusd::sdf;
 use openusd::usd::Prim;
 
@@ -123,9 +123,19 @@ fn places(node: &Node<'_>, count: usize) -> Result<Vec<DMat4>, MeshError> {
         }
     }
     let place = |k: usize| {
-        let turn = turns.get(k).map_or(DMat4::IDENTITY, |&[w, x, y, z]| xform::orientation(w, DVec3::new(x, y, z)));
+        let turn = turns.get(k).map_or(DMat4::IDENTITY, |&turn| turned(turn));
         let scale = scales.get(k).map_or(DMat4::IDENTITY, |&scale| xform::scaling(scale));
         DMat4::from_translation(positions[k]) * turn * scale
     };
     Ok((0..count).map(place).collect())
+}
+
+/// The matrix of a quaternion as `GfMatrix4d::SetRotate` writes it: of one whose length is not 1, as those of 16 bits, it is
+/// not quite a turn.
+fn turned([w, x, y, z]: [f64; 4]) -> DMat4 {
+    DMat4::from_mat3(DMat3::from_cols(
+        DVec3::new(1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + z * w), 2.0 * (z * x - y * w)),
+        DVec3::new(2.0 * (x * y - z * w), 1.0 - 2.0 * (z * z + x * x), 2.0 * (y * z + x * w)),
+        DVec3::new(2.0 * (z * x + y * w), 2.0 * (y * z - x * w), 1.0 - 2.0 * (y * y + x * x)),
+    ))
 }

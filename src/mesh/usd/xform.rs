@@ -76,7 +76,7 @@ pub(super) fn scaling(factors: DVec3) -> DMat4 {
 }
 
 /// The turn of a quaternion, as `GfRotation::SetQuat` reads it: one whose length is not 1 turns by its real part.
-pub(super) fn orientation(real: f64, imaginary: DVec3) -> DMat4 {
+fn orientation(real: f64, imaginary: DVec3) -> DMat4 {
     match imaginary.try_normalize() {
         Some(axis) => DMat4::from_axis_angle(axis, 2.0 * real.clamp(-1.0, 1.0).acos()),
         None => DMat4::IDENTITY,
