@@ -1,13 +1,14 @@
 //! Runs the passes in order and reads the results back.
 
 use super::certificate::{Certificate, Summary};
-use super::charts::Cutter;
 use super::device::Device;
 use super::passes::{self, Colour, Passes, PictureTargets, Scene, SurfaceTargets, Visible};
+use super::scenes::Scenes;
 use super::view::{Tile, View};
 use super::{GpuError, Pipeline, Stage, Tables, paper};
 use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
+use std::borrow::Cow;
 use std::time::{Duration, Instant};
 
 /// Patch index of a pixel that sees no surface.
@@ -138,26 +139,33 @@ fn draw<T: bytemuck::Pod>(
     }
     let mut timings = Timings::default();
     timings.time("compile", || passes.prepare(device, view, colour));
-    let scene = timings.time("scene", || Scene::new(device, tables, view))?;
+    let mut scenes = Scenes::new(device, tables, view, &mut timings)?;
     let size = view.camera.size;
     let mut summary = (view.pipeline == Pipeline::Exact).then(Summary::default);
     let mut whole = vec![T::zeroed(); size[0] as usize * size[1] as usize];
-    for tile in Tile::cover(size, view.samples, Tile::PICTURE_SIDE) {
-        let visible = Visible::new(device, &tile, view.pipeline);
+    let side = scenes.side(Tile::PICTURE_SIDE);
+    let tiles = match size.iter().all(|&n| n * view.samples <= side) {
+        true => Tile::cover(size, view.samples, side),
+        false => Tile::cover(size, view.samples, (side - 2 * view.samples).max(view.samples)),
+    };
+    for own in tiles {
+        let tile = own.grown(size);
+        let mut visible = Visible::new(device, &tile, view.pipeline);
         let picture = PictureTargets::new(device, &tile, colour);
-        see(device, passes, &scene, &visible, &tile, &mut timings)?;
-        let stage = choose_stage(device, passes, &scene, &visible, &picture)?;
+        let scene = &scenes.see(passes, &mut visible, &tile, &mut timings)?;
+        let stage = choose_stage(device, passes, scene, &visible, &picture)?;
         timings
-            .time(limit_step(view), || passes::limit::run(device, passes, &scene, &visible, &picture.surface, stage))?;
-        timings.time("shade", || passes::shade::run(device, passes, &scene, &visible, &picture, stage))?;
-        timings.time("resolve", || passes::resolve::run(device, passes, &scene, &picture, &tile, colour))?;
+            .time(limit_step(view), || passes::limit::run(device, passes, scene, &visible, &picture.surface, stage))?;
+        timings.time("shade", || passes::shade::run(device, passes, scene, &visible, &picture, stage))?;
+        timings.time("resolve", || passes::resolve::run(device, passes, scene, &picture, &tile, colour))?;
         if let (Some(summary), Some(texture)) = (&mut summary, &visible.certificate) {
             let bits: Vec<u32> = timings.time("certificates", || device.read_texture(texture))?;
+            let bits = crop(&bits, [tile.origin, tile.size], [own.origin, own.size]);
             *summary = summary.and(timings.time("certificates", || Summary::of_bits(&bits)));
         }
         let pixels: Vec<T> = timings.time("read back", || device.read_texture(&picture.colour))?;
-        let [origin, tile_size] = tile.pixels();
-        paste(&mut whole, size, &pixels, origin, tile_size);
+        let [origin, own_size] = own.pixels();
+        paste(&mut whole, size, &crop(&pixels, tile.pixels(), own.pixels()), origin, own_size);
     }
     Ok(Drawn { pixels: whole, summary, timings })
 }
@@ -173,15 +181,15 @@ pub(super) fn inspect(
         return paper::inspect(device, passes, tables, view);
     }
     let mut timings = Timings::default();
-    let scene = timings.time("scene", || Scene::new(device, tables, view))?;
+    let mut scenes = Scenes::new(device, tables, view, &mut timings)?;
     let size = view.camera.size;
     let mut image = SurfaceImage::empty(size);
-    for tile in Tile::cover(size, 1, Tile::SURFACE_SIDE) {
-        let visible = Visible::new(device, &tile, view.pipeline);
+    for tile in Tile::cover(size, 1, scenes.side(Tile::SURFACE_SIDE)) {
+        let mut visible = Visible::new(device, &tile, view.pipeline);
         let surface = SurfaceTargets::new(device, &tile);
-        see(device, passes, &scene, &visible, &tile, &mut timings)?;
-        timings.time(limit_step(view), || passes::limit::run_full(device, passes, &scene, &visible, &surface))?;
-        timings.time("read back", || read_tile(device, &scene, &visible, &surface, &tile, &mut image))?;
+        let scene = &scenes.see(passes, &mut visible, &tile, &mut timings)?;
+        timings.time(limit_step(view), || passes::limit::run_full(device, passes, scene, &visible, &surface))?;
+        timings.time("read back", || read_tile(device, scene, &visible, &surface, &tile, &mut image))?;
     }
     image.timings = timings;
     Ok(image)
@@ -219,29 +227,6 @@ pub(super) fn choose_stage(
     Ok(*passes.fastest.get_or_init(|| stage))
 }
 
-/// What each sample of a tile sees.
-fn see(
-    device: &Device,
-    passes: &Passes,
-    scene: &Scene<'_>,
-    visible: &Visible,
-    tile: &Tile,
-    timings: &mut Timings,
-) -> Result<(), GpuError> {
-    if scene.view.pipeline != Pipeline::Exact {
-        return timings.time("visibility", || passes::visibility::run(device, passes, scene, visible, tile));
-    }
-    let cutter = timings.time("charts", || Cutter::new(scene.tables, scene.view, tile));
-    let charts = timings.time("charts", || cutter.first());
-    timings.time("visibility", || passes::charts::run(device, passes, &charts, visible))?;
-    if cutter.has_rest() {
-        let depths: Vec<f32> = timings.time("visibility", || device.read_texture(&visible.depth))?;
-        let charts = timings.time("charts", || cutter.rest(&depths));
-        timings.time("visibility", || passes::charts::run(device, passes, &charts, visible))?;
-    }
-    Ok(())
-}
-
 fn limit_step(view: &View) -> &'static str {
     match view.pipeline {
         Pipeline::Exact | Pipeline::Limit | Pipeline::Points => "limit",
@@ -263,7 +248,8 @@ pub(super) fn read_tile(
     let scale = scene.view.field.method.scale(unit);
     let ids: Vec<u32> = device.read_texture(&visible.patch)?;
     let patch: Vec<u32> = ids.iter().map(|id| id.wrapping_sub(1)).collect();
-    paste(&mut image.patch, size, &patch, tile.origin, tile.size);
+    let in_whole = |&patch: &u32| if patch == NO_PATCH { patch } else { tables.in_whole(patch) };
+    paste(&mut image.patch, size, &patch.iter().map(in_whole).collect::<Vec<_>>(), tile.origin, tile.size);
     paste(&mut image.uv, size, &device.read_texture(&visible.uv)?, tile.origin, tile.size);
     let local: Vec<[f32; 4]> = device.read_texture(&surface.position)?;
     let world = |(p, &patch): (&[f32; 4], &u32)| match patch {
@@ -292,6 +278,16 @@ pub(super) fn read_tile(
     };
     paste(&mut image.certificate, size, &certificate, tile.origin, tile.size);
     Ok(())
+}
+
+/// The part of a rectangle, given by origin and size, that lies in a smaller one.
+fn crop<'a, T: Copy>(values: &'a [T], [origin, size]: [[u32; 2]; 2], [inner, part]: [[u32; 2]; 2]) -> Cow<'a, [T]> {
+    if size == part {
+        return Cow::Borrowed(values);
+    }
+    let [left, top] = [0, 1].map(|k| (inner[k] - origin[k]) as usize);
+    let rows = values.chunks_exact(size[0] as usize).skip(top).take(part[1] as usize);
+    Cow::Owned(rows.flat_map(|row| &row[left..left + part[0] as usize]).copied().collect())
 }
 
 /// Copies a rectangle into a picture.

@@ -23,6 +23,7 @@ mod paper;
 mod passes;
 mod proxy;
 pub mod records;
+mod scenes;
 pub mod shader;
 pub mod tables;
 mod view;
@@ -244,12 +245,57 @@ mod tests {
         }
     }
 
+    /// Tables beyond the adapter: what pictures and samples get of them are the same bits, and other pipelines are refused.
     #[test]
-    fn tables_beyond_the_adapter_are_refused() {
+    fn tables_beyond_the_adapter_are_made_in_parts() {
         let surface = LimitSurface::new(&mesh::sample()).expect("the sample has a surface");
+        let scout = Scout::new(&surface).expect("it has faces");
+        let camera = scout.camera([60, 45], glam::DVec3::Z);
+        let mut view = View::new(camera, scout.light(&camera));
+        let patches = surface.patches().len() as u32;
+        let samples: Vec<Sample> = (0..3 * patches)
+            .map(|i| Sample { patch: (i * 7919) % patches, uv: [0.3 / (1 + i % 40) as f32, 0.2] })
+            .collect();
         let mut gpu = Gpu::with_blocks(&AdapterChoice::from_env(), 1).expect("an adapter");
-        gpu.device.limits.max_texture_array_layers = 2;
-        let error = gpu.upload_as(&surface, TableLayout::Expanded).map(drop);
-        assert!(matches!(error, Err(GpuError::TooLarge { limit: 131_072, .. })), "{error:?}");
+        for layout in TableLayout::ALL {
+            // A layer fewer than they take.
+            let most = gpu.device.limits.max_texture_array_layers;
+            let layers = gpu.upload_as(&surface, layout).expect("it fits").blocks() - 1;
+            let results = [most, layers].map(|layers| {
+                gpu.device.limits.max_texture_array_layers = layers;
+                let tables = gpu.upload_as(&surface, layout).expect("none is too large");
+                let jets = gpu.evaluate(&tables, &samples).expect("the adapter works");
+                let mut seen = gpu.inspect(&tables, &view).expect("the adapter works");
+                seen.timings = Default::default();
+                (tables.is_resident(), jets, gpu.render(&tables, &view).expect("the adapter works").rgba8, seen)
+            });
+            let [(whole, jets, picture, seen), (parts, part_jets, part_picture, part_seen)] = results;
+            assert!(whole && !parts, "{layout}");
+            assert!(jets == part_jets, "{layout}: samples differ");
+            // Charts are cut for each tile, and tiles are smaller: points differ by what (u,v) in f32 are rounded.
+            let channels = picture.iter().zip(&part_picture).map(|(a, b)| a.abs_diff(*b)).max();
+            assert!(channels <= Some(2), "{layout}: pictures differ by {channels:?}");
+            let size = surface.diagonal();
+            for (pixel, (a, b)) in seen.position.iter().zip(&part_seen.position).enumerate() {
+                let normals = glam::Vec3::from(seen.normal[pixel]).dot(part_seen.normal[pixel].into());
+                let covered = seen.patch[pixel] != NO_PATCH;
+                assert_eq!(covered, part_seen.patch[pixel] != NO_PATCH, "{layout}, pixel {pixel}");
+                assert!(a.distance(*b) < 1e-6 * size && (!covered || normals > 0.99999), "{layout}, pixel {pixel}");
+                if covered {
+                    let (ptex, uv) =
+                        surface.to_ptex(part_seen.patch[pixel] as usize, part_seen.uv[pixel].map(f64::from));
+                    let (patch, uv) = surface.locate(ptex, uv).expect("a pixel that sees it");
+                    let point = surface.evaluate(patch, uv).position;
+                    assert!(point.distance(*a) < 1e-6 * size, "{layout}, pixel {pixel}: patch of the whole");
+                }
+            }
+            gpu.device.limits.max_texture_array_layers = layers;
+            let tables = gpu.upload_as(&surface, layout).expect("none is too large");
+            view.pipeline = Pipeline::Limit;
+            let error = gpu.render(&tables, &view).map(drop).expect_err("nothing to draw from").to_string();
+            assert!(error.contains("only the exact pipeline"), "{error}");
+            view.pipeline = Pipeline::Exact;
+            gpu.device.limits.max_texture_array_layers = most;
+        }
     }
 }

@@ -103,6 +103,13 @@ impl View {
         if self.field.method.reads_curvature() && tables.content().has_tail() {
             return fail("curvature is read from tables in the expanded layout only (--tables expanded)".into());
         }
+        if !tables.is_resident() && self.pipeline != Pipeline::Exact {
+            let gib = tables.size() as f64 / f64::from(1 << 30);
+            return fail(format!(
+                "the tables of {} patches take {gib:.1} GiB; only the exact pipeline draws such surfaces: choose it",
+                tables.patches()
+            ));
+        }
         let Camera { size, .. } = self.camera;
         if size.iter().any(|n| !(1..=MAX_SIZE).contains(n)) {
             return fail(format!("picture size {}x{}: each side must be 1 to {MAX_SIZE} pixels", size[0], size[1]));
@@ -339,6 +346,13 @@ impl Tile {
             enlarge: 1.0,
         };
         starts(total[1]).flat_map(|y| starts(total[0]).map(move |x| tile(x, y))).collect()
+    }
+
+    /// The tile and a pixel round it, as far as a picture of `size` pixels goes: shading looks at neighbours.
+    pub fn grown(&self, size: [u32; 2]) -> Tile {
+        let low = self.origin.map(|n| n.saturating_sub(self.samples));
+        let high = [0, 1].map(|k| (self.origin[k] + self.size[k] + self.samples).min(size[k] * self.samples));
+        Tile { origin: low, size: [0, 1].map(|k| high[k] - low[k]), ..*self }
     }
 
     /// First pixel and size in pixels.

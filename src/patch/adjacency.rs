@@ -4,6 +4,7 @@
 //! or a line u = const or v = const inside a ptex face. Dyadic intervals on the two sides of a line are matched; where
 //! depths differ, an edge has several neighbours, or part of one.
 
+use super::piece::Piece;
 use super::{Patch, Patches};
 use crate::osd::{INFINITE_SHARPNESS, Level};
 use std::collections::HashMap;
@@ -56,14 +57,26 @@ impl Neighbour {
 
 /// An edge of a ptex face as an interval of a line.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct PtexEdge {
+struct PtexEdge {
     line: u32,
-    /// Part of the line, in [`UNITS`], as the edge runs counter-clockwise round the face: it may run backwards.
-    from: u32,
-    to: u32,
-    sharp: bool,
+    /// Part of the line, in halves of it, as the edge runs counter-clockwise round the face: it may run backwards.
+    from: u8,
+    to: u8,
+    kind: PtexEdgeKind,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum PtexEdgeKind {
+    /// Of the control mesh.
+    Smooth,
+    /// Of the control mesh, infinitely sharp.
+    Sharp,
     /// Not manifold: nothing lies across.
-    open: bool,
+    Open,
+    /// Between two quadrants of an n-gon.
+    Spoke,
+    /// Between two quadrants of a flat n-gon.
+    SharpSpoke,
 }
 
 /// The four edges of every ptex face, and the level at which the ptex face is a quad.
@@ -73,61 +86,80 @@ pub(super) struct PtexEdges {
     levels: Vec<u8>,
     /// Control face of each ptex face.
     faces: Vec<u32>,
-    control_edges: u32,
     lines: u32,
+    /// While pieces are put together: the lines that other pieces have too, by the vertices of the control mesh.
+    shared: Vec<([u32; 2], u32)>,
 }
 
 impl PtexEdges {
-    /// `creased`: the surface has a crease along every line.
-    pub fn new(control: &Level, creased: bool) -> Self {
-        let control_edges = control.edge_sharpness.len() as u32;
-        let mut out = Self { control_edges, lines: control_edges, ..Self::default() };
-        for face in 0..control.face_count() {
+    /// Those of a piece's own faces. Lines are counted in the piece: its edges, then its spokes. `creased`: the surface has a
+    /// crease along every line.
+    pub fn new(control: &Level, piece: &Piece<'_>, creased: bool) -> Self {
+        let mut out = Self { lines: control.edge_sharpness.len() as u32, ..Self::default() };
+        for face in piece.core.clone() {
             let corners = control.corners(face);
             let size = corners.len();
             // Every control edge is a line from its lower vertex to its higher one.
-            let whole = |i: usize| {
-                let [a, b] = [i % size, (i + 1) % size].map(|i| control.face_vertices[corners.start + i]);
-                let edge = control.face_edges[corners.start + i % size] as usize;
-                let (from, to) = if a < b { (0, UNITS) } else { (UNITS, 0) };
-                PtexEdge {
-                    line: edge as u32,
-                    from,
-                    to,
-                    sharp: creased || control.edge_sharpness[edge] >= INFINITE_SHARPNESS,
-                    open: control.edge_faces[edge][0] < 0,
+            let mut whole: Vec<PtexEdge> = Vec::with_capacity(size);
+            for [a, b, edge] in control.edges_of_face(face) {
+                let (from, to) = if a < b { (0, 2) } else { (2, 0) };
+                let faces = control.edge_faces[edge];
+                let kind = match creased || control.edge_sharpness[edge] >= INFINITE_SHARPNESS {
+                    _ if faces[0] < 0 => PtexEdgeKind::Open,
+                    true => PtexEdgeKind::Sharp,
+                    false => PtexEdgeKind::Smooth,
+                };
+                whole.push(PtexEdge { line: edge as u32, from, to, kind });
+                let is_beyond = |face: i32| usize::try_from(face).is_ok_and(|face| !piece.core.contains(&face));
+                if let Some(vertices) = &piece.vertices
+                    && faces.into_iter().any(is_beyond)
+                {
+                    out.shared.push(([vertices[a.min(b)], vertices[a.max(b)]], edge as u32));
                 }
-            };
-            if size == 4 {
-                out.edges.push(std::array::from_fn(whole));
+            }
+            let control_face = (piece.first_face + face - piece.core.start) as u32;
+            if let &[a, b, c, d] = &whole[..] {
+                out.edges.push([a, b, c, d]);
                 out.levels.push(0);
-                out.faces.push(face as u32);
+                out.faces.push(control_face);
                 continue;
             }
             // Quadrant k: half of edge k, the spoke to edge k, the spoke to edge k-1 backwards, half of edge k-1.
             let spokes = out.lines;
             out.lines += size as u32;
-            let spoke = |k: usize, outwards: bool| PtexEdge {
+            let spoke = |k: usize, [from, to]: [u8; 2]| PtexEdge {
                 line: spokes + (k % size) as u32,
-                from: if outwards { 0 } else { UNITS },
-                to: if outwards { UNITS } else { 0 },
-                sharp: creased,
-                open: false,
+                from,
+                to,
+                kind: if creased { PtexEdgeKind::SharpSpoke } else { PtexEdgeKind::Spoke },
             };
             for k in 0..size {
-                let (first, last) = (whole(k), whole(k + size - 1));
-                let middle = UNITS / 2;
+                let before = (k + size - 1) % size;
                 out.edges.push([
-                    PtexEdge { to: middle, ..first },
-                    spoke(k, false),
-                    spoke(k + size - 1, true),
-                    PtexEdge { from: middle, ..last },
+                    PtexEdge { to: 1, ..whole[k] },
+                    spoke(k, [2, 0]),
+                    spoke(before, [0, 2]),
+                    PtexEdge { from: 1, ..whole[before] },
                 ]);
                 out.levels.push(1);
-                out.faces.push(face as u32);
+                out.faces.push(control_face);
             }
         }
         out
+    }
+
+    /// Adds those of the next piece.
+    pub fn append(&mut self, mut piece: Self, known: &mut HashMap<[u32; 2], u32>) {
+        let mut lines: Vec<u32> = (self.lines..self.lines + piece.lines).collect();
+        for (vertices, line) in piece.shared {
+            let line = &mut lines[line as usize];
+            *line = *known.entry(vertices).or_insert(*line);
+        }
+        piece.edges.as_flattened_mut().iter_mut().for_each(|edge| edge.line = lines[edge.line as usize]);
+        self.lines += piece.lines;
+        self.edges.append(&mut piece.edges);
+        self.levels.append(&mut piece.levels);
+        self.faces.append(&mut piece.faces);
     }
 }
 
@@ -256,10 +288,11 @@ fn side(patches: &Patches, patch: &Patch, index: u32, edge: u8) -> Option<((u32,
         let above = u32::from(place == near);
         return Some((line, part(matches!(cell_edge, 2 | 3), low, low + length, above, false)));
     }
-    let PtexEdge { line, from, to, sharp, open } = patches.ptex_edges.edges[ptex][usize::from(cell_edge)];
-    if open {
+    let PtexEdge { line, from, to, kind } = patches.ptex_edges.edges[ptex][usize::from(cell_edge)];
+    if kind == PtexEdgeKind::Open {
         return None;
     }
+    let [from, to] = [from, to].map(|halves| u32::from(halves) * (UNITS / 2));
     // Counter-clockwise from the start of the ptex edge.
     let start = if matches!(cell_edge, 2 | 3) { UNITS - low - length } else { low };
     let scaled = |x: u32| match from < to {
@@ -268,8 +301,10 @@ fn side(patches: &Patches, patch: &Patch, index: u32, edge: u8) -> Option<((u32,
     };
     let [a, b] = [scaled(start), scaled(start + length)];
     // Two quadrants of an n-gon lie on the same side of a control edge.
-    let side = if line < patches.ptex_edges.control_edges { patches.ptex_edges.faces[ptex] } else { patch.ptex };
-    Some(((line, 0), part(a > b, a.min(b), a.max(b), side, sharp)))
+    let is_spoke = matches!(kind, PtexEdgeKind::Spoke | PtexEdgeKind::SharpSpoke);
+    let is_sharp = matches!(kind, PtexEdgeKind::Sharp | PtexEdgeKind::SharpSpoke);
+    let side = if is_spoke { patch.ptex } else { patches.ptex_edges.faces[ptex] };
+    Some(((line, 0), part(a > b, a.min(b), a.max(b), side, is_sharp)))
 }
 
 /// Pieces where an interval of one side overlaps one of the other, both ways.

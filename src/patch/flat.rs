@@ -4,21 +4,22 @@
 //! beyond all four edges make of the four corners: the face has boundaries all round.
 
 use super::adjacency::PtexEdges;
+use super::piece::Piece;
 use super::tree::{PHANTOM, slot};
-use super::{Node, Patch, PatchError, PatchKind, Patches, Shape, Support};
+use super::{Node, Patch, PatchError, PatchKind, Patches, Shape, Support, SupportKind};
 use crate::osd::{Level, Refiner};
 
-/// The patches of a mesh whose faces, those that are no quads, are refined once.
-pub(super) fn build(refiner: &Refiner) -> Result<Patches, PatchError> {
+/// The patches of a piece whose faces, those that are no quads, are refined once.
+pub(super) fn build(refiner: &Refiner, piece: &Piece<'_>) -> Result<Patches, PatchError> {
     let control = refiner.level(0)?;
     // Without such faces OpenSubdiv has no level 1.
     let middles = if refiner.level_count() > 1 { refiner.level(1)? } else { Level::default() };
-    let mut out = Patches { ptex_edges: PtexEdges::new(&control, true), ..Patches::default() };
-    for face in 0..control.face_count() {
+    let mut out = Patches { ptex_edges: PtexEdges::new(&control, piece, true), ..Patches::default() };
+    for face in piece.core.clone() {
         let corners = control.corners(face);
         let hole = control.face_holes[face] != 0;
         if corners.len() == 4 {
-            out.push_face((!hole).then(|| corner_vertices(&control, face, 0)), false);
+            out.push_face(piece.first_ptex, (!hole).then(|| corner_vertices(&control, face, 0)), false);
             continue;
         }
         for corner in corners {
@@ -35,7 +36,7 @@ pub(super) fn build(refiner: &Refiner) -> Result<Patches, PatchError> {
                     return Err(PatchError::ChildOrder { level: 0, face });
                 }
             }
-            out.push_face(quadrant, true);
+            out.push_face(piece.first_ptex, quadrant, true);
         }
     }
     Ok(out)
@@ -48,9 +49,9 @@ fn corner_vertices(level: &Level, face: usize, first: usize) -> [u32; 4] {
 }
 
 impl Patches {
-    /// Adds a ptex face with these corners, counter-clockwise from (0,0); `None` for a hole.
-    fn push_face(&mut self, corners: Option<[u32; 4]>, quadrant: bool) {
-        let ptex = self.roots.len() as u32;
+    /// Adds a ptex face with these corners, counter-clockwise from (0,0); `None` for a hole. The first one is `first_ptex`.
+    fn push_face(&mut self, first_ptex: u32, corners: Option<[u32; 4]>, quadrant: bool) {
+        let ptex = first_ptex + self.roots.len() as u32;
         let Some([a, b, c, d]) = corners else {
             self.roots.push(Node::Hole);
             return;
@@ -60,7 +61,7 @@ impl Patches {
             net[slot(i, j)] = vertex;
         }
         self.roots.push(Node::Leaf(self.patches.len() as u32));
-        self.supports.push(Support { first: self.vertices.len() as u32, class: None, rows: None });
+        self.supports.push(Support { first: self.vertices.len() as u32, kind: SupportKind::Net });
         self.vertices.extend(net);
         self.patches.push(Patch {
             ptex,

@@ -6,8 +6,9 @@
 
 use super::fan::Fan;
 use super::lattice::{NEIGHBOURS, NET};
+use super::piece::Piece;
 use super::tree::{PHANTOM, kind_of};
-use super::{MAX_VALENCE, Node, Patch, PatchError, PatchKind, Patches, RingClass, Shape, Support};
+use super::{MAX_VALENCE, Node, Patch, PatchError, PatchKind, Patches, RingClass, Shape, Support, SupportKind};
 use crate::osd::{Level, Refiner, Rule};
 use std::collections::HashMap;
 
@@ -57,7 +58,8 @@ impl Cell {
     }
 }
 
-pub(super) fn build(refiner: &Refiner) -> Result<Patches, PatchError> {
+/// The patches of a piece's own faces. Ptex faces are numbered as in the whole mesh, refined vertices as in the piece.
+pub(super) fn build(refiner: &Refiner, piece: &Piece<'_>) -> Result<Patches, PatchError> {
     let levels = (0..refiner.level_count()).map(|i| refiner.level(i)).collect::<Result<Vec<_>, _>>()?;
     let first_vertex =
         refiner.vertex_counts().iter().scan(0, |sum, &count| Some(std::mem::replace(sum, *sum + count))).collect();
@@ -71,16 +73,25 @@ pub(super) fn build(refiner: &Refiner) -> Result<Patches, PatchError> {
         out: Patches { triangles: true, ..Patches::default() },
         levels,
     };
-    for face in 0..walk.levels[0].face_count() {
-        let cell = Cell { ptex: face as u32, depth: 0, origin: [0, 0], shape: Shape::Triangle };
-        let root = walk.visit(0, face, cell)?;
+    for face in piece.core.clone() {
+        let ptex = piece.first_ptex + (face - piece.core.start) as u32;
+        let root = walk.root(face, ptex)?;
         walk.out.roots.push(root);
     }
+    let out = std::mem::take(&mut walk.out);
+    let places = std::mem::take(&mut walk.places);
+    // Whether the neighbours are split is all that is wanted of them.
+    piece.beside(&walk.levels[0]).into_iter().try_for_each(|face| walk.root(face, 0).map(drop))?;
+    (walk.out, walk.places) = (out, places);
     walk.mark_transitions();
     Ok(walk.out)
 }
 
 impl Walk {
+    fn root(&mut self, face: usize, ptex: u32) -> Result<Node, PatchError> {
+        self.visit(0, face, Cell { ptex, depth: 0, origin: [0, 0], shape: Shape::Triangle })
+    }
+
     fn visit(&mut self, level: usize, face: usize, cell: Cell) -> Result<Node, PatchError> {
         if self.levels[level].face_holes[face] != 0 {
             return Ok(Node::Hole);
@@ -199,7 +210,7 @@ impl Walk {
         let first = self.out.vertices.len() as u32;
         if kind == PatchKind::Regular {
             self.out.vertices.extend(NET.map(|[i, j]| at((i, j))));
-            return Support { first, class: None, rows: None };
+            return Support { first, kind: SupportKind::Net };
         }
         let fan = &self.fans[rotation];
         let class = RingClass { triangles: true, ..RingClass::new(fan) };
@@ -211,7 +222,7 @@ impl Walk {
         if index == next {
             self.out.classes.push(class);
         }
-        Support { first, class: Some(index), rows: None }
+        Support { first, kind: SupportKind::Class(index) }
     }
 
     fn mark_transitions(&mut self) {

@@ -12,16 +12,16 @@ mod fan;
 mod flat;
 pub mod lattice;
 mod loop_tree;
+mod piece;
+mod refine;
 mod strips;
 mod tree;
 mod triangle;
 
 pub use adjacency::{Adjacency, Neighbour};
+pub use refine::Refinement;
 pub use tree::PHANTOM;
 pub(crate) use tree::slot;
-
-use crate::mesh::{Scheme, SubdivMesh};
-use crate::osd::{INFINITE_SHARPNESS, MAX_ISOLATION, Refiner};
 
 /// Most faces round an extraordinary vertex.
 pub const MAX_VALENCE: usize = 1024;
@@ -43,6 +43,9 @@ pub enum PatchError {
     /// The classes of one vertex take memory with the square of its valence (300 MB at the limit).
     #[error("a face of {0} corners or a vertex of valence {0}; at most {MAX_VALENCE} are supported: split it")]
     Valence(usize),
+    /// Refined vertices are counted in 32 bits.
+    #[error("the refined mesh has more points than 32-bit indices can count; split it")]
+    TooManyPoints,
     /// OpenSubdiv numbered child faces in an order we do not know.
     #[error("face {face} of level {level}: unexpected order of its child faces: please report this mesh")]
     ChildOrder {
@@ -285,10 +288,17 @@ pub type RowWeights = [[f64; 4]; 4];
 #[derive(Debug, Clone, Copy)]
 struct Support {
     first: u32,
-    /// Class of an irregular patch.
-    class: Option<u32>,
-    /// Row weights of a strip.
-    rows: Option<u32>,
+    kind: SupportKind,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum SupportKind {
+    /// A net.
+    Net,
+    /// The rows of a net whose weights these are.
+    Strip(u32),
+    /// What the class says.
+    Class(u32),
 }
 
 /// The patches of a mesh and the quadtrees that find them. Topology only: control points may move without it changing.
@@ -308,33 +318,6 @@ pub struct Patches {
 }
 
 impl Patches {
-    /// Refines `mesh` as deep as its finite sharpness asks and collects the patches.
-    ///
-    /// # Errors
-    /// OpenSubdiv refuses the mesh, or a face stays without a closed form.
-    pub fn new(mesh: &SubdivMesh) -> Result<(Self, Refiner), PatchError> {
-        if mesh.scheme.is_linear() {
-            // One level, for the middles of faces that are no quads.
-            let refiner = Refiner::adaptive(mesh, 1, 1, false)?;
-            return Ok((flat::build(&refiner)?, refiner));
-        }
-        let isolation = isolation(mesh);
-        if mesh.scheme == Scheme::Loop {
-            let refiner = Refiner::adaptive(mesh, isolation, RINGS_STAND_ALONE, false)?;
-            return Ok((loop_tree::build(&refiner)?, refiner));
-        }
-        // Along a single crease OpenSubdiv need not refine: strips have a closed form. Should it call a crease single
-        // that we do not, everything is refined.
-        let refiner = Refiner::adaptive(mesh, isolation, RINGS_STAND_ALONE, true)?;
-        match tree::build(&refiner) {
-            Err(PatchError::NotRefined { .. }) => {
-                let refiner = Refiner::adaptive(mesh, isolation, RINGS_STAND_ALONE, false)?;
-                Ok((tree::build(&refiner)?, refiner))
-            }
-            patches => Ok((patches?, refiner)),
-        }
-    }
-
     /// All patches, in ptex order.
     pub fn all(&self) -> &[Patch] {
         &self.patches
@@ -347,16 +330,24 @@ impl Patches {
 
     /// Index into [`classes`](Self::classes) of an irregular patch.
     pub fn class(&self, patch: usize) -> Option<usize> {
-        self.supports[patch].class.map(|class| class as usize)
+        match self.supports[patch].kind {
+            SupportKind::Class(class) => Some(class as usize),
+            _ => None,
+        }
     }
 
     /// Refined vertices that control a patch: for a regular one the 4x4 net, u fastest, or the 12 points of a box spline
     /// ([`stam::box_spline`](crate::stam::box_spline)), [`PHANTOM`] beyond sharp edges; else the support of its class.
     pub fn support(&self, patch: usize) -> &[u32] {
-        let Support { first, class, .. } = self.supports[patch];
+        let first = self.supports[patch].first as usize;
         let regular = if self.triangles { lattice::NET.len() } else { 16 };
-        let length = class.map_or(regular, |class| self.classes[class as usize].support());
-        &self.vertices[first as usize..first as usize + length]
+        let length = self.class(patch).map_or(regular, |class| self.classes[class].support());
+        &self.vertices[first..first + length]
+    }
+
+    /// The supports of all patches.
+    pub(crate) fn supports(&self) -> &[u32] {
+        &self.vertices
     }
 
     /// Lets another vertex be point `point` of a patch's support, and of those that share it (strips).
@@ -367,7 +358,10 @@ impl Patches {
 
     /// How the rows (v = const) of a strip's net follow from the four rows of its support; `None` for other patches.
     pub fn row_weights(&self, patch: usize) -> Option<&RowWeights> {
-        self.supports[patch].rows.map(|rows| &self.row_weights[rows as usize])
+        match self.supports[patch].kind {
+            SupportKind::Strip(rows) => Some(&self.row_weights[rows as usize]),
+            _ => None,
+        }
     }
 
     /// Whether patches are triangles, under Loop's scheme.
@@ -415,15 +409,4 @@ impl Patches {
         let local = self.patches[patch as usize].to_local(uv);
         Some((patch as usize, local.map(|x| x.clamp(0.0, 1.0))))
     }
-}
-
-/// After two levels every face is a quad with at most one extraordinary vertex and no other feature than its spokes.
-const RINGS_STAND_ALONE: u32 = 2;
-
-/// Levels after which no finite sharpness is left: it decreases by one a level (Chaikin averages first, which lowers the
-/// largest).
-fn isolation(mesh: &SubdivMesh) -> u32 {
-    let sharpness = mesh.creases.iter().map(|c| c.sharpness).chain(mesh.corners.iter().map(|c| c.sharpness));
-    let finite = sharpness.filter(|&s| s < INFINITE_SHARPNESS).fold(0.0, f32::max);
-    (finite.ceil() as u32).clamp(RINGS_STAND_ALONE, MAX_ISOLATION)
 }

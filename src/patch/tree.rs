@@ -2,8 +2,11 @@
 
 use super::adjacency::PtexEdges;
 use super::fan::Fan;
+use super::piece::Piece;
 use super::strips;
-use super::{MAX_VALENCE, Node, Patch, PatchError, PatchKind, Patches, RingClass, Shape, Strips, Support, Tip};
+use super::{
+    MAX_VALENCE, Node, Patch, PatchError, PatchKind, Patches, RingClass, Shape, Strips, Support, SupportKind, Tip,
+};
 use crate::osd::{INFINITE_SHARPNESS, Level, Refiner, Rule};
 use std::collections::HashMap;
 
@@ -49,7 +52,8 @@ impl Cell {
     }
 }
 
-pub(super) fn build(refiner: &Refiner) -> Result<Patches, PatchError> {
+/// The patches of a piece's own faces. Ptex faces are numbered as in the whole mesh, refined vertices and lines as in the piece.
+pub(super) fn build(refiner: &Refiner, piece: &Piece<'_>) -> Result<Patches, PatchError> {
     let levels = (0..refiner.level_count()).map(|i| refiner.level(i)).collect::<Result<Vec<_>, _>>()?;
     let first_vertex =
         refiner.vertex_counts().iter().scan(0, |sum, &count| Some(std::mem::replace(sum, *sum + count))).collect();
@@ -64,37 +68,47 @@ pub(super) fn build(refiner: &Refiner) -> Result<Patches, PatchError> {
         out: Patches::default(),
         levels,
     };
-    walk.roots()?;
+    let mut ptex = piece.first_ptex;
+    for face in piece.core.clone() {
+        walk.root(face, &mut ptex)?;
+    }
+    walk.visit_beside(piece)?;
     walk.mark_transitions();
-    walk.out.ptex_edges = PtexEdges::new(&walk.levels[0], false);
+    walk.out.ptex_edges = PtexEdges::new(&walk.levels[0], piece, false);
     Ok(walk.out)
 }
 
 impl Walk {
-    fn roots(&mut self) -> Result<(), PatchError> {
-        let mut ptex = 0;
-        for face in 0..self.levels[0].face_count() {
-            let size = self.levels[0].corners(face).len();
-            let cell = |ptex| Cell { ptex, depth: 0, origin: [0, 0] };
-            if size == 4 {
-                let node = self.visit(0, face, cell(ptex))?;
-                self.out.roots.push(node);
-                ptex += 1;
-                continue;
-            }
-            self.states[0][face] = State::Split;
-            for corner in 0..size {
-                let node = match self.levels[0].face_holes[face] {
-                    0 => {
-                        let child = self.child(0, face, corner, 0)?;
-                        self.visit(1, child, cell(ptex))?
-                    }
-                    _ => Node::Hole,
-                };
-                self.out.roots.push(node);
-                ptex += 1;
-            }
+    /// A control face, whose first ptex face is `ptex`; then that is the next one's.
+    fn root(&mut self, face: usize, ptex: &mut u32) -> Result<(), PatchError> {
+        let size = self.levels[0].corners(face).len();
+        let mut cell = || Cell { ptex: std::mem::replace(ptex, *ptex + 1), depth: 0, origin: [0, 0] };
+        if size == 4 {
+            let node = self.visit(0, face, cell())?;
+            self.out.roots.push(node);
+            return Ok(());
         }
+        self.states[0][face] = State::Split;
+        for corner in 0..size {
+            let cell = cell();
+            let node = match self.levels[0].face_holes[face] {
+                0 => {
+                    let child = self.child(0, face, corner, 0)?;
+                    self.visit(1, child, cell)?
+                }
+                _ => Node::Hole,
+            };
+            self.out.roots.push(node);
+        }
+        Ok(())
+    }
+
+    /// Visits the faces across an edge from the piece's own: whether they are split is all that is wanted of them.
+    fn visit_beside(&mut self, piece: &Piece<'_>) -> Result<(), PatchError> {
+        let own = (std::mem::take(&mut self.out), std::mem::take(&mut self.places));
+        // Numbers of classes and rows that come up here are not used: nothing follows.
+        piece.beside(&self.levels[0]).into_iter().try_for_each(|face| self.root(face, &mut 0))?;
+        (self.out, self.places) = own;
         Ok(())
     }
 
@@ -216,7 +230,7 @@ impl Walk {
             depth[axis] += finer;
             origin[axis] = (origin[axis] << finer) + index;
             self.places.push((level, face, u8::from(strip == 0) << 2 | u8::from(last)));
-            self.out.supports.push(Support { rows: Some(first_rows + u32::from(strip)), ..support });
+            self.out.supports.push(Support { kind: SupportKind::Strip(first_rows + u32::from(strip)), ..support });
             self.out.patches.push(Patch {
                 ptex: cell.ptex,
                 shape: Shape::Square,
@@ -263,7 +277,7 @@ impl Walk {
         let first = self.out.vertices.len() as u32;
         if kind == PatchKind::Regular {
             self.out.vertices.extend(grid);
-            return Support { first, class: None, rows: None };
+            return Support { first, kind: SupportKind::Net };
         }
         let fan = &self.fans[rotation];
         let class = RingClass::new(fan);
@@ -276,7 +290,7 @@ impl Walk {
         if index == next {
             self.out.classes.push(class);
         }
-        Support { first, class: Some(index), rows: None }
+        Support { first, kind: SupportKind::Class(index) }
     }
 
     fn mark_transitions(&mut self) {

@@ -2,8 +2,7 @@
 
 use super::LimitSurface;
 use crate::mesh::{MeshError, SubdivMesh};
-use crate::osd::Refiner;
-use crate::patch::PatchError;
+use crate::patch::{PatchError, Refinement};
 
 /// Why a surface was not moved.
 #[derive(Debug, thiserror::Error)]
@@ -22,10 +21,11 @@ pub enum MoveError {
 /// A limit surface that follows the control points of its mesh.
 ///
 /// Refinement, patches, classes with their tables, and [`adjacency`](LimitSurface::adjacency) stay; a move interpolates
-/// the refined points again, which is linear in their number. The result is that of [`LimitSurface::new`], to the last bit.
+/// the refined points again, which is linear in their number. The result is that of [`LimitSurface::new`], to the last bit if no
+/// part repeats another: those are refined each by itself here.
 #[derive(Debug)]
 pub struct MovingSurface {
-    refiner: Refiner,
+    refinement: Refinement,
     /// The mesh without its points.
     topology: SubdivMesh,
     vertices: usize,
@@ -38,9 +38,9 @@ impl MovingSurface {
     /// # Errors
     /// As [`LimitSurface::new`].
     pub fn new(mesh: &SubdivMesh) -> Result<Self, PatchError> {
-        let (surface, refiner) = LimitSurface::with_refiner(mesh)?;
+        let (surface, refinement) = LimitSurface::with_refinement(mesh)?;
         let topology = SubdivMesh { points: Vec::new(), notes: Vec::new(), ..mesh.clone() };
-        Ok(Self { refiner, topology, vertices: mesh.points.len(), surface })
+        Ok(Self { refinement, topology, vertices: mesh.points.len(), surface })
     }
 
     /// The surface of the mesh that came last. A clone of it stays what it is.
@@ -58,7 +58,7 @@ impl MovingSurface {
             return Err(MoveError::Topology(what));
         }
         mesh.validate_points()?;
-        let points = self.refiner.interpolate(&mesh.points)?;
+        let points = self.refinement.interpolate(&mesh.points)?;
         self.surface = self.surface.moved(points, mesh.diagonal());
         Ok(&self.surface)
     }

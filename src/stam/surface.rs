@@ -1,13 +1,11 @@
 //! The limit surface of a mesh: patches, points, tables, evaluation.
 
 use super::class::{ClassTable, WINDOW_POINTS};
-use super::instances::Instances;
+use super::instances::{Instances, Placed};
 use crate::mesh::SubdivMesh;
-use crate::osd::Refiner;
-use crate::patch::{Adjacency, PHANTOM, Patch, PatchError, PatchKind, Patches, RingClass, slot};
+use crate::patch::{Adjacency, PHANTOM, Patch, PatchError, PatchKind, Patches, Refinement, RingClass, slot};
 use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
-use std::ops::Range;
 use std::sync::Arc;
 
 /// The control net of a patch, as an evaluator wants it.
@@ -57,22 +55,26 @@ impl LimitSurface {
 
     /// As [`new`](Self::new), with everything stored as often as it is there.
     pub(crate) fn flat(mesh: &SubdivMesh) -> Result<Self, PatchError> {
-        Ok(Self::with_refiner(mesh)?.0)
+        let (patches, points) = Patches::with_points(mesh)?;
+        Ok(Self::of(patches, points, mesh))
     }
 
     /// As [`new`](Self::new), with what makes refined points of control points.
-    pub(super) fn with_refiner(mesh: &SubdivMesh) -> Result<(Self, Refiner), PatchError> {
-        let (patches, refiner) = Patches::new(mesh)?;
-        let points = refiner.interpolate(&mesh.points)?;
+    pub(super) fn with_refinement(mesh: &SubdivMesh) -> Result<(Self, Refinement), PatchError> {
+        let (patches, mut refinement) = Patches::new(mesh)?;
+        let points = refinement.interpolate(&mesh.points)?;
+        Ok((Self::of(patches, points, mesh), refinement))
+    }
+
+    fn of(patches: Patches, points: Vec<DVec3>, mesh: &SubdivMesh) -> Self {
         let tables = patches.classes().par_iter().map(|&class| ClassTable::new(class)).collect();
-        let surface = Self {
+        Self {
             patches: Arc::new(patches),
             tables: Arc::new(tables),
             points: Arc::new(points),
             instances: None,
             diagonal: mesh.diagonal(),
-        };
-        Ok((surface, refiner))
+        }
     }
 
     /// All patches, in ptex order.
@@ -129,19 +131,23 @@ impl LimitSurface {
     /// A box that encloses the limit surface: that of the refined points that control it (all rules are convex
     /// combinations). `None` for a surface without patches.
     pub fn bounds(&self) -> Option<[DVec3; 2]> {
-        let join = |a: Option<[DVec3; 2]>, [low, high]: [DVec3; 2]| {
-            Some(a.map_or([low, high], |[a, b]| [a.min(low), b.max(high)]))
+        let both = |[low, high]: [DVec3; 2], [a, b]: [DVec3; 2]| [low.min(a), high.max(b)];
+        let used = |vertex: &&u32| **vertex != PHANTOM;
+        let Some(instances) = &self.instances else {
+            let of = |vertices: &[u32]| {
+                vertices.iter().filter(used).map(|&vertex| [self.points[vertex as usize]; 2]).reduce(both)
+            };
+            return self.patches.supports().par_chunks(1 << 16).filter_map(of).reduce_with(both);
         };
-        let bounds = |patches: Range<usize>, moved: &dyn Fn(DVec3) -> DVec3| {
-            let used = patches.flat_map(|patch| self.patches.support(patch)).filter(|&&v| v != PHANTOM);
-            used.map(|&v| moved(self.points[v as usize])).fold(None, |bounds, p| join(bounds, [p, p]))
+        let of_part = |part: &Placed| {
+            let place = |&vertex: &u32| {
+                let stored = self.points[vertex as usize];
+                [part.transform.map_or(stored, |transform| transform.transform_point3(stored)); 2]
+            };
+            let supports = part.stored.clone().flat_map(|patch| self.patches.support(patch as usize));
+            supports.filter(used).map(place).reduce(both)
         };
-        let Some(instances) = &self.instances else { return bounds(0..self.stored_patches(), &|p| p) };
-        let of_parts = instances.parts().iter().filter_map(|part| {
-            let stored = part.stored.start as usize..part.stored.end as usize;
-            bounds(stored, &|p| part.transform.map_or(p, |transform| transform.transform_point3(p)))
-        });
-        of_parts.fold(None, join)
+        instances.parts().par_iter().filter_map(of_part).reduce_with(both)
     }
 
     /// The patch at (u,v), each 0 to 1, of a ptex face, and the patch-local parameters; `None` in a hole.
@@ -166,6 +172,15 @@ impl LimitSurface {
     /// The kind of a patch.
     pub fn kind(&self, patch: usize) -> PatchKind {
         self.patches()[patch].kind
+    }
+
+    /// Some control point of a patch, phantom points left out.
+    pub(crate) fn control_point(&self, patch: usize) -> DVec3 {
+        let (stored, transform) = self.stored(patch);
+        let mut support = self.patches.support(stored).iter();
+        let vertex = support.find(|&&vertex| vertex != PHANTOM).expect("corners are control points");
+        let point = self.points[*vertex as usize];
+        transform.map_or(point, |transform| transform.transform_point3(point))
     }
 
     /// Refined vertices that control a patch, [`PHANTOM`] where there is none.

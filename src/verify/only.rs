@@ -243,7 +243,7 @@ fn our_weights(
     vertices: &[u32],
 ) -> Result<Option<Vec<[f64; 3]>>, VerifyError> {
     let mesh = plant.map_or_else(|| Ok(subject.mesh.clone()), |plant| plant.mesh(subject.mesh))?;
-    let (_, refiner) = Patches::new(&mesh)?;
+    let (_, mut refinement) = Patches::new(&mesh)?;
     let base = LimitSurface::flat(&mesh)?;
     let mut weights = Vec::new();
     for three in vertices.chunks(3) {
@@ -251,7 +251,7 @@ fn our_weights(
         for (&vertex, unit) in three.iter().zip(DVec3::AXES) {
             points[vertex as usize] = unit;
         }
-        let surface = base.with_refined(refiner.interpolate(&points)?);
+        let surface = base.with_refined(refinement.interpolate(&points)?);
         let surface = plant.map_or(Ok(surface.clone()), |plant| plant.linear(surface))?;
         let unit = Subject { surface: &surface, rounding: Rounding::of(&mesh), ..*subject };
         let Some((_, jet)) = unit.evaluate(at) else { return Ok(None) };

@@ -83,7 +83,7 @@ fn the_command_shows_a_point_and_refuses_what_is_none() {
         text(&shown.stdout)
     );
     for (words, message) in [
-        (vec!["cube.obj", "--only", "6,0,0"], "ptex face 6, but the mesh has only 0 to 5"),
+        (vec!["cube.obj", "--only", "6,0,0"], "ptex face 6 does not exist; the mesh has 6"),
         (vec!["cube.obj", "--only", "0,0,1.5"], "u and v in 0 to 1"),
         (vec!["cube.obj", "--only", "0,nan,0"], "u and v in 0 to 1"),
         (vec!["cube.obj", "hole.obj", "--only", "0,0,0"], "--only takes one mesh, not 2"),

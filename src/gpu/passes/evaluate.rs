@@ -4,6 +4,7 @@ use super::{Passes, bind, compute};
 use crate::gpu::device::Device;
 use crate::gpu::records::{JetRecord, SampleRecord};
 use crate::gpu::shader::{EVALUATE, WORKGROUP};
+use crate::gpu::tables::numbered;
 use crate::gpu::{GpuError, Sample, Tables};
 use crate::stam::Jet;
 use glam::Vec3;
@@ -23,8 +24,18 @@ pub fn run(device: &Device, passes: &Passes, tables: &Tables, samples: &[Sample]
         return Err(GpuError::Patch { sample, patch: samples[sample].patch, patches });
     }
     let mut jets = Vec::with_capacity(samples.len());
-    for batch in samples.chunks(BATCH) {
-        jets.extend(run_batch(device, passes, tables, batch)?);
+    if tables.is_resident() {
+        for batch in samples.chunks(BATCH) {
+            jets.extend(run_batch(device, passes, tables, batch)?);
+        }
+        return Ok(jets);
+    }
+    for batch in samples.chunks(BATCH.min(tables.largest_part().max(1))) {
+        let patches: Vec<u32> = batch.iter().map(|sample| sample.patch).collect();
+        let (patches, places) = numbered(&patches, u32::MAX);
+        let batch: Vec<Sample> =
+            batch.iter().zip(places).map(|(sample, patch)| Sample { patch, uv: sample.uv }).collect();
+        jets.extend(run_batch(device, passes, &tables.part(device, patches)?, &batch)?);
     }
     Ok(jets)
 }

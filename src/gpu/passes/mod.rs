@@ -177,6 +177,8 @@ fn target(device: &Device, size: [u32; 2], format: TextureFormat) -> wgpu::Textu
     // What compute stages write.
     let storage = match format {
         PACKED_FORMAT | SAMPLE_FORMAT => TextureUsages::STORAGE_BINDING,
+        // What is renumbered.
+        PATCH_FORMAT => TextureUsages::COPY_DST,
         _ => TextureUsages::empty(),
     };
     device.device.create_texture(&wgpu::TextureDescriptor {
@@ -201,6 +203,16 @@ impl Visible {
             certificate: (pipeline == Pipeline::Exact).then(|| texture(CERTIFICATE_FORMAT)),
             proxy: (pipeline == Pipeline::Polygon).then(|| [SURFACE_FORMAT; 2].map(texture)),
         }
+    }
+}
+
+impl Visible {
+    /// Replaces the patch ids, row by row.
+    pub fn renumber(&mut self, device: &Device, ids: &[u32]) {
+        let size = self.patch.size();
+        let layout =
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * size.width), rows_per_image: None };
+        device.queue.write_texture(self.patch.as_image_copy(), bytemuck::cast_slice(ids), layout, size);
     }
 }
 

@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use std::collections::HashSet;
 use std::fmt;
 use std::str::FromStr;
+use std::sync::Arc;
 
 /// Memory that tables may take before [`TableLayout::Auto`] prefers the smallest layout to the fastest: half of the
 /// smallest adapter that professional programs still ask for (2 GiB), which leaves as much for pictures; a software
@@ -88,7 +89,7 @@ pub(super) struct Plan {
     /// Levels stored point by point of the patches that have a class.
     pub expanded: usize,
     /// The rest, class by class; none where all levels are expanded.
-    pub bases: Vec<Option<Basis>>,
+    pub bases: Arc<Vec<Option<Basis>>>,
     /// Some patches are [`Storage::Gregory`].
     pub has_gregory: bool,
     /// What moves instances; none where there are more than records can count, so that every patch has its own points.
@@ -97,35 +98,59 @@ pub(super) struct Plan {
     pub texels: u64,
     /// Bytes of all tables.
     pub bytes: u64,
+    /// Bytes of what classes share.
+    pub matrices: u64,
+    /// Most bytes of a patch.
+    pub largest_patch: u64,
 }
 
 impl Plan {
     /// Plans `layout`; `Auto` keeps to [`BUDGET`] and to `limit` texels of points.
     pub fn new<S: PatchSource + ?Sized>(source: &S, layout: TableLayout, limit: u64) -> Plan {
-        let census = Census::new(source, &shared(source));
+        let transforms = shared(source);
+        let census = Census::new(source, &transforms);
+        let of = |layout: TableLayout| {
+            Plan::of(&census, layout, bases(source, layout), census.gregory > 0, transforms.clone())
+        };
         if layout != TableLayout::Auto {
-            return Plan::of(source, &census, layout);
+            return of(layout);
         }
-        let [expanded, hybrid] = [TableLayout::Expanded, TableLayout::Hybrid].map(|l| Plan::of(source, &census, l));
+        let [expanded, hybrid] = [TableLayout::Expanded, TableLayout::Hybrid].map(of);
         let plan = if expanded.bytes > AMPLE.max(hybrid.bytes) { hybrid } else { expanded };
         match plan.bytes <= BUDGET && plan.texels <= limit {
             true => plan,
             false => {
-                let compact = Plan::of(source, &census, TableLayout::Compact);
+                let compact = of(TableLayout::Compact);
                 if compact.bytes < plan.bytes { compact } else { plan }
             }
         }
     }
 
-    fn of<S: PatchSource + ?Sized>(source: &S, census: &Census, layout: TableLayout) -> Plan {
+    /// The plan of some patches of the source that this one is for: in the same layout, with the same matrices, each patch with
+    /// points of its own.
+    pub fn for_part<S: PatchSource + ?Sized>(&self, part: &S) -> Plan {
+        Plan::of(&Census::new(part, &[]), self.layout, self.bases.clone(), self.has_gregory, Vec::new())
+    }
+
+    fn of(
+        census: &Census,
+        layout: TableLayout,
+        bases: Arc<Vec<Option<Basis>>>,
+        has_gregory: bool,
+        transforms: Vec<DAffine3>,
+    ) -> Plan {
         let expanded = layout.expanded_levels();
-        let bases: Vec<Option<Basis>> = match expanded < TABLE_LEVELS {
-            true => source.classes().par_iter().map(|table| Basis::new(table, expanded + 1..=TABLE_LEVELS)).collect(),
-            false => Vec::new(),
+        let mut plan = Plan {
+            layout,
+            expanded,
+            bases,
+            has_gregory,
+            transforms,
+            texels: 0,
+            bytes: 0,
+            matrices: 0,
+            largest_patch: 0,
         };
-        let has_gregory = census.gregory > 0;
-        let transforms = shared(source);
-        let mut plan = Plan { layout, expanded, bases, has_gregory, transforms, texels: 0, bytes: 0 };
         let matrices: usize = (0..plan.bases.len()).map(|class| plan.matrix_texels(class)).sum();
         let irregular: usize =
             census.classes.iter().enumerate().map(|(class, &count)| count * plan.irregular_texels(Some(class))).sum();
@@ -133,8 +158,12 @@ impl Plan {
             + census.gregory * GREGORY_TEXELS
             + census.classless * plan.irregular_texels(None);
         plan.texels = (plan.transforms.len() * TRANSFORM_TEXELS + matrices + irregular + rest) as u64;
+        plan.matrices = 16 * matrices as u64;
+        let classes = census.classes.iter().enumerate().filter(|&(_, &count)| count > 0).map(|(class, _)| Some(class));
+        let irregular = classes.chain((census.classless > 0).then_some(None)).map(|class| plan.irregular_texels(class));
+        plan.largest_patch = 16 * (1 + irregular.max().unwrap_or(0).max(GREGORY_TEXELS) as u64);
         plan.bytes =
-            16 * (source.count() as u64 + plan.texels) + 8 * u64::from(SCALE_LEVELS) * census.eigenvalues as u64;
+            16 * (census.patches as u64 + plan.texels) + 8 * u64::from(SCALE_LEVELS) * census.eigenvalues as u64;
         plan
     }
 
@@ -168,6 +197,13 @@ impl Plan {
     }
 }
 
+/// What gives the levels of each class that a layout does not expand.
+fn bases<S: PatchSource + ?Sized>(source: &S, layout: TableLayout) -> Arc<Vec<Option<Basis>>> {
+    let levels = layout.expanded_levels() + 1..=TABLE_LEVELS;
+    let classes = if levels.is_empty() { &[] } else { source.classes() };
+    Arc::new(classes.par_iter().map(|table| Basis::new(table, levels.clone())).collect())
+}
+
 /// Texels of a transform: the columns of its matrix.
 pub(super) const TRANSFORM_TEXELS: usize = 3;
 
@@ -181,8 +217,9 @@ fn shared<S: PatchSource + ?Sized>(source: &S) -> Vec<DAffine3> {
     if transforms.len() <= MOST_TRANSFORMS && scales <= MOST_TRANSFORMS { transforms } else { Vec::new() }
 }
 
-/// How many patches with points of their own there are of each class.
+/// How many patches there are, and how many with points of their own of each class.
 struct Census {
+    patches: usize,
     regular: usize,
     gregory: usize,
     classes: Vec<usize>,
@@ -194,8 +231,14 @@ struct Census {
 
 impl Census {
     fn new<S: PatchSource + ?Sized>(source: &S, transforms: &[DAffine3]) -> Census {
-        let mut census =
-            Census { regular: 0, gregory: 0, classes: vec![0; source.classes().len()], classless: 0, eigenvalues: 0 };
+        let mut census = Census {
+            patches: source.count(),
+            regular: 0,
+            gregory: 0,
+            classes: vec![0; source.classes().len()],
+            classless: 0,
+            eigenvalues: 0,
+        };
         let mut eigenvalues = HashSet::new();
         let is_own = |patch: &usize| transforms.is_empty() || source.instance(*patch).is_none();
         for patch in (0..source.count()).filter(is_own) {

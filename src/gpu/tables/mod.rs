@@ -15,14 +15,16 @@
 //! that is another one in another place has a record of its own (16 B), and no points. What a texel means is described in
 //! `shaders/shared/tables.wgsl`. Tables are built and handed over some 16 MiB at a time. Everything is divided
 //! by [`Tables::unit`], a power of two near the size of the object, so that models in microns and in kilometres use the
-//! same part of f32.
+//! same part of f32. What exceeds [`BUDGET`] or the adapter is built for the patches that a picture sees (`part.rs`).
 
 mod basis;
 mod layout;
 mod pack;
+mod part;
 mod source;
 
 pub use layout::{BUDGET, TableLayout, bytes};
+pub(super) use part::numbered;
 pub use source::{PatchNet, PatchNets, PatchSource, Storage, TableNet};
 
 use super::GpuError;
@@ -31,6 +33,7 @@ use super::shader::Content;
 use crate::stam::{ClassTable, LEVELS, WINDOW_POINTS};
 use glam::DVec3;
 use layout::Plan;
+use rayon::prelude::*;
 use std::sync::Arc;
 
 /// Levels stored per irregular patch.
@@ -39,9 +42,8 @@ pub const TABLE_LEVELS: usize = 24;
 /// The tables of a surface on the adapter.
 #[derive(Debug)]
 pub struct Tables {
-    records: wgpu::Texture,
-    points: wgpu::Texture,
-    scales: wgpu::Texture,
+    /// `None` where they exceed the adapter: [`Tables::part`] makes those of some patches.
+    textures: Option<Textures>,
     /// Origin of every patch, world space.
     pub(super) origins: Vec<DVec3>,
     /// Refinement levels and transition bits of every patch.
@@ -49,11 +51,19 @@ pub struct Tables {
     /// Where the patches came from.
     pub(super) source: Arc<dyn PatchSource>,
     bounds: [DVec3; 2],
-    layout: TableLayout,
-    has_gregory: bool,
-    has_instances: bool,
-    size: u64,
+    plan: Plan,
     unit: f64,
+    /// Bytes that may be on the adapter.
+    room: u64,
+    /// Where these are the tables of a part: its patches.
+    part: Option<Arc<[u32]>>,
+}
+
+#[derive(Debug)]
+struct Textures {
+    records: wgpu::Texture,
+    points: wgpu::Texture,
+    scales: wgpu::Texture,
 }
 
 impl Tables {
@@ -89,36 +99,52 @@ impl Tables {
 
     /// How irregular patches are stored; never [`TableLayout::Auto`].
     pub fn layout(&self) -> TableLayout {
-        self.layout
+        self.plan.layout
     }
 
     /// What the passes that read them are compiled for.
     pub(super) fn content(&self) -> Content {
-        match self.layout {
-            _ if self.has_gregory => Content::Gregory,
-            TableLayout::Expanded if self.has_instances => Content::Instances,
+        let has_instances = !self.plan.transforms.is_empty();
+        match self.plan.layout {
+            _ if self.plan.has_gregory => Content::Gregory,
+            TableLayout::Expanded if has_instances => Content::Instances,
             TableLayout::Expanded => Content::Points,
-            _ if self.has_instances => Content::InstancesWithTails,
+            _ if has_instances => Content::InstancesWithTails,
             _ => Content::Tails,
         }
     }
 
-    /// Bytes on the adapter.
+    /// Bytes of all tables; on the adapter, if [`is_resident`](Self::is_resident).
     pub fn size(&self) -> u64 {
-        self.size
+        self.plan.bytes
+    }
+
+    /// Whether the tables are on the adapter. Those that exceed [`BUDGET`] or the adapter are not: pictures of the exact
+    /// pipeline and samples get what they need of them, others are refused.
+    pub fn is_resident(&self) -> bool {
+        self.textures.is_some()
     }
 
     /// Blocks that the points are divided into.
     pub fn blocks(&self) -> u32 {
-        self.points.depth_or_array_layers()
+        self.textures.as_ref().map_or(0, |textures| textures.points.depth_or_array_layers())
+    }
+
+    /// Patches whose tables are sure to fit.
+    pub(super) fn largest_part(&self) -> usize {
+        (self.room.saturating_sub(self.plan.matrices) / self.plan.largest_patch) as usize
     }
 
     /// Views of patch records, points and scales: bindings 0, 1 and 2 of group 0 in every pass that evaluates.
+    ///
+    /// # Panics
+    /// The tables are not resident.
     pub(super) fn views(&self) -> [wgpu::TextureView; 3] {
+        let Textures { records, points, scales } = self.textures.as_ref().expect("tables that are on the adapter");
         let in_blocks =
             wgpu::TextureViewDescriptor { dimension: Some(wgpu::TextureViewDimension::D2Array), ..Default::default() };
-        let [records, scales] = [&self.records, &self.scales].map(|texture| texture.create_view(&Default::default()));
-        [records, self.points.create_view(&in_blocks), scales]
+        let [records, scales] = [records, scales].map(|texture| texture.create_view(&Default::default()));
+        [records, points.create_view(&in_blocks), scales]
     }
 }
 
@@ -145,20 +171,25 @@ pub(super) fn upload<S: PatchSource + ?Sized>(
     let bounds = source.bounds();
     let diagonal = (bounds[1] - bounds[0]).length();
     let unit = if diagonal > 0.0 && diagonal.is_finite() { diagonal.log2().round().exp2() } else { 1.0 };
-    let plan = Plan::new(source, layout, device.block_table_limit());
+    let limit = device.block_table_limit();
+    let plan = Plan::new(source, layout, limit);
+    if plan.bytes <= BUDGET && plan.texels <= limit {
+        return fill(device, source, plan, unit);
+    }
+    let room = BUDGET.min(16 * limit);
+    let places: Vec<_> = (0..source.count()).into_par_iter().map(|patch| source.place(patch)).collect();
+    let (origins, cells) = places.into_iter().unzip();
+    Ok(Tables { textures: None, origins, cells, source: source.shared(), bounds, plan, unit, room, part: None })
+}
+
+/// Builds planned tables on the adapter.
+fn fill<S: PatchSource + ?Sized>(device: &Device, source: &S, plan: Plan, unit: f64) -> Result<Tables, GpuError> {
     let pack::Packed { points, records, scales, origins, cells } = pack::pack(device, source, &plan, unit)?;
-    Ok(Tables {
-        size: 16 * (records.len() as u64 + plan.texels) + 8 * scales.len() as u64,
+    let textures = Textures {
         records: device.table("the records of the patches", &records, wgpu::TextureFormat::Rgba32Uint)?,
         points,
         scales: device.table("the powers of lambda", &scales, wgpu::TextureFormat::Rg32Float)?,
-        cells,
-        origins,
-        source: source.shared(),
-        bounds,
-        layout: plan.layout,
-        has_gregory: plan.has_gregory,
-        has_instances: !plan.transforms.is_empty(),
-        unit,
-    })
+    };
+    let (source, bounds) = (source.shared(), source.bounds());
+    Ok(Tables { textures: Some(textures), origins, cells, source, bounds, room: plan.bytes, plan, unit, part: None })
 }

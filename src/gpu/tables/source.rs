@@ -82,6 +82,16 @@ pub trait PatchSource: Debug + Send + Sync {
 
     /// A patch with so many levels, if it has as many.
     fn patch(&self, patch: usize, levels: usize) -> PatchNet;
+    /// Some point near a patch, and its cell: refinement levels and transition bits, as in [`PatchNet`].
+    fn place(&self, patch: usize) -> (DVec3, ([u8; 2], u8)) {
+        let PatchNet { levels, transition, net } = self.patch(patch, 1);
+        let point = match net {
+            TableNet::Regular(points) => points[5],
+            TableNet::Irregular { limit, .. } => limit,
+            TableNet::Gregory(Gregory { bezier, .. }) => bezier[5],
+        };
+        (point, (levels, transition))
+    }
     /// The nets of a patch.
     fn nets(&self, patch: usize) -> PatchNets<'_>;
     /// Ptex face and its parameters at those of a patch.
@@ -126,6 +136,11 @@ impl PatchSource for LimitSurface {
             }
         };
         PatchNet { levels: record.levels(), transition: record.transition, net }
+    }
+
+    fn place(&self, patch: usize) -> (DVec3, ([u8; 2], u8)) {
+        let record = self.patches()[patch];
+        (self.control_point(patch), (record.levels(), record.transition))
     }
 
     fn nets(&self, patch: usize) -> PatchNets<'_> {
