@@ -8,7 +8,13 @@ fn main() {
     for file in SHIM.iter().chain(&["ffi/osd.h", "ffi/guard.hpp", "ffi/table.hpp", "build.rs"]) {
         println!("cargo:rerun-if-changed={file}");
     }
-    cc::Build::new().cpp(true).std("c++14").opt_level(2).warnings(true).files(SHIM).compile("catoptric_osd");
+    let mut shim = cc::Build::new();
+    shim.cpp(true).std("c++14").opt_level(2).warnings(true).files(SHIM);
+    // The address sanitizer of `cargo fuzz` looks into the shim too (docs/FUZZING.md).
+    if env::var("CARGO_CFG_SANITIZE").is_ok_and(|kinds| kinds.split(',').any(|kind| kind == "address")) {
+        shim.flag("-fsanitize=address").flag("-fno-omit-frame-pointer");
+    }
+    shim.compile("catoptric_osd");
     // Debian's libosdCPU; the GPU half of OpenSubdiv is not used.
     println!("cargo:rustc-link-lib=osdCPU");
 

@@ -36,6 +36,7 @@ pub mod compare;
 pub mod curves;
 pub mod field;
 pub mod gpu;
+mod line;
 pub mod mesh;
 pub mod osd;
 pub mod output;

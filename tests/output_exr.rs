@@ -50,7 +50,7 @@ impl Written {
             made_by: "by hand: \u{fc}\u{2192}",
         };
         write_exr(&path, &layers).expect("a writable folder");
-        let text = std::fs::read(&path).map(|bytes| read_exr_made_by(&bytes[..]).expect("an EXR"));
+        let text = std::fs::read(&path).map(|bytes| read_exr_made_by(std::io::Cursor::new(bytes)).expect("an EXR"));
         assert_eq!(text.expect("it is readable").as_deref(), Some(layers.made_by));
         let file = read_all_flat_layers_from_file(&path).expect("an EXR");
         Written { view, surface, colour, seen, file }

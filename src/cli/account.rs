@@ -97,7 +97,7 @@ impl Account {
         let Some(summary) = &self.summary else { return };
         let Certified { samples, covered, solved_on_host, unconverged, newton_steps_mean, residual_max_pixels } =
             Certified::new(summary, samples_per_pixel);
-        eprintln!(
+        tell!(
             "exact: {covered} of {samples} samples see the surface, {solved_on_host} of them solved on the host, the others in \
              {newton_steps_mean:.2} Newton steps; at most {residual_max_pixels:.1e} pixels off; {unconverged} not converged"
         );
@@ -105,14 +105,14 @@ impl Account {
 
     /// The time of each step, on standard error.
     pub fn say_timings(&self, adapter: &str) {
-        eprintln!("{:<20} {adapter}", "adapter");
+        tell!("{:<20} {adapter}", "adapter");
         self.say_steps();
     }
 
     /// The same where no adapter took part.
     pub fn say_steps(&self) {
         for (name, time) in &self.steps {
-            eprintln!("{name:<20} {:>8.1} ms", time.as_secs_f64() * 1e3);
+            tell!("{name:<20} {:>8.1} ms", time.as_secs_f64() * 1e3);
         }
     }
 

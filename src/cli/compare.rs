@@ -114,7 +114,7 @@ impl Compared {
     /// A line on standard error.
     pub fn say(&self) {
         let Compared { level_smooth, level_sharp, end_caps, patches, patches_end_cap, normal_deg, lines_px, .. } = self;
-        eprintln!(
+        tell!(
             "compare: OpenSubdiv level {level_smooth}/{level_sharp}, {patches} patches ({patches_end_cap} {end_caps} end caps): \
              normals p99 {}, max {} degrees; reflection lines p99 {}, max {} pixels; seen in one picture only: {} pixels",
             short(normal_deg.p99),

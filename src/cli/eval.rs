@@ -5,7 +5,7 @@ use super::rows::{Rows, check_place, parameter, shortest};
 use super::{Failure, write_out};
 use crate::gpu::{self, Gpu};
 use crate::mesh::SubdivMesh;
-use crate::osd::{Answer, Far, MAX_ISOLATION};
+use crate::osd::{Answer, Far, Location, MAX_ISOLATION};
 use crate::output::check_writable;
 use crate::stam::{Jet, LimitSurface};
 use csv::StringRecord;
@@ -33,7 +33,8 @@ pub(super) fn run(args: &EvalArgs) -> Result<(), Failure> {
     args.output.as_deref().map_or(Ok(()), check_writable)?;
     let mesh = args.scene.load(args.mesh.as_deref())?;
     let surface = LimitSurface::new(&mesh).map_err(|e| Failure::of(&mesh, e))?;
-    let samples = read(&args.samples, &surface)?;
+    let places = (surface.ptex_count(), surface.has_triangles());
+    let samples = read(&Rows::open(&args.samples, "samples", "face,u,v")?, places)?;
     let jets = match args.backend {
         Backend::Cpu => samples.par_iter().map(|s| Some(surface.evaluate_ptex(s.face, s.uv())?.1)).collect(),
         Backend::Gpu => on_gpu(&surface, &samples)?,
@@ -42,16 +43,26 @@ pub(super) fn run(args: &EvalArgs) -> Result<(), Failure> {
     write_out(args.output.as_ref(), &table(&surface, &samples, &jets))
 }
 
+/// Reads the samples of a text as `eval --samples` does; `name` is the file's in messages, `faces` the number of ptex faces, and `triangles` whether u + v
+/// is at most 1 on them.
+///
+/// # Errors
+/// What is wrong with which line, and what to do: one line.
+pub fn parse_samples(text: &[u8], name: &Path, faces: usize, triangles: bool) -> Result<Vec<Location>, String> {
+    let samples = read(&Rows::of(name, text), (faces, triangles)).map_err(Failure::line)?;
+    Ok(samples.into_iter().map(|sample| (sample.face, sample.u, sample.v)).collect())
+}
+
 /// Reads `face,u,v` rows, every one checked.
-fn read(path: &Path, surface: &LimitSurface) -> Result<Vec<Sample>, Failure> {
+fn read(rows: &Rows<'_>, (faces, triangles): (usize, bool)) -> Result<Vec<Sample>, Failure> {
     let header = |header: Option<&StringRecord>| {
         let header = header.filter(|header| header.iter().eq(["face", "u", "v"])).cloned();
         header.ok_or_else(|| "the header is not face,u,v; make it the first line".to_owned())
     };
     let not_a_row = "not a row of face,u,v (a whole number and two numbers); correct it";
-    Rows::open(path, "samples", "face,u,v")?.read(header, not_a_row, |header, row| {
+    rows.read(header, not_a_row, |header, row| {
         let sample: Sample = row.deserialize(Some(header)).map_err(|_| not_a_row.to_owned())?;
-        check_place((sample.face, sample.u, sample.v), surface.ptex_count(), surface.has_triangles())?;
+        check_place((sample.face, sample.u, sample.v), faces, triangles)?;
         Ok(sample)
     })
 }

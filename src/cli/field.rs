@@ -2,7 +2,7 @@
 
 use super::Failure;
 use crate::field::{Grid, Method};
-use crate::rig::{Colour, Colours, PatternName, PatternRig, checked_part};
+use crate::rig::{Colour, Colours, PatternName, PatternRig, Rig, checked_part};
 use clap::Args;
 
 #[derive(Debug, Args)]
@@ -70,6 +70,22 @@ impl PatternArgs {
                 None => PatternRig { name: text.parse().ok(), width, range: None },
             },
         })
+    }
+}
+
+impl PatternArgs {
+    /// Refuses a width that changes nothing of the pattern that the rig turns out to have.
+    pub fn check(&self, rig: &Rig) -> Result<(), Failure> {
+        let name = rig.pattern.name_for(&rig.method());
+        let what = match name {
+            PatternName::Heat => "false colours, which have no lights",
+            PatternName::File(_) => "a picture, whose lights are as wide as it shows them",
+            _ => return Ok(()),
+        };
+        match self.light_width {
+            Some(_) => Err(Failure::Bad(format!("--light-width changes nothing of {what}; leave it out"))),
+            None => Ok(()),
+        }
     }
 }
 

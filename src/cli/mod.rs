@@ -1,5 +1,13 @@
 //! The command line: a thin layer of typed flags over the library.
 
+/// Writes a line to standard error. Where nobody takes it, the work goes on.
+macro_rules! tell {
+    ($($line:tt)*) => {{
+        use std::io::Write;
+        let _ = writeln!(std::io::stderr(), $($line)*);
+    }};
+}
+
 mod account;
 mod args;
 mod compare;
@@ -20,6 +28,9 @@ mod scene;
 mod settings;
 mod verify;
 
+pub use eval::parse_samples;
+pub use verify::parse_answers;
+
 use args::{Cli, Command};
 use clap::Parser;
 use std::fmt::Display;
@@ -28,6 +39,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use crate::gpu::GpuError;
+use crate::line::printable;
 use crate::mesh::{MeshError, SubdivMesh};
 use crate::output::OutputError;
 
@@ -48,6 +60,15 @@ impl Failure {
     /// A failure with the mesh in front.
     fn of(mesh: &SubdivMesh, error: impl Display) -> Self {
         Self::Bad(format!("{}: {error}", mesh.name))
+    }
+
+    /// What it says in one line.
+    fn line(self) -> String {
+        match self {
+            Self::Check => "a check failed".to_owned(),
+            Self::Bad(message) | Self::NoAdapter(message) => message,
+            Self::Stdout(error) => format!("cannot write to standard output: {error}"),
+        }
     }
 }
 
@@ -80,9 +101,8 @@ impl From<std::io::Error> for Failure {
 pub fn run() -> ExitCode {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
-        Err(error) if !error.use_stderr() => {
-            return if error.print().is_ok() { ExitCode::SUCCESS } else { ExitCode::from(2) };
-        }
+        // Help and version.
+        Err(error) if !error.use_stderr() => return exit_code(error.print().map_err(Failure::Stdout)),
         Err(error) => {
             // One line: what is wrong, without the usage that clap puts below it.
             let text = error.to_string();
@@ -91,7 +111,7 @@ pub fn run() -> ExitCode {
                 clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => "no command".to_owned(),
                 _ => what.join(" ").trim_start_matches("error: ").to_owned(),
             };
-            eprintln!("catoptric: {what}; see catoptric --help");
+            tell!("catoptric: {}; see catoptric --help", printable(&what));
             return ExitCode::from(2);
         }
     };
@@ -105,16 +125,20 @@ pub fn run() -> ExitCode {
         Command::Quality(args) => quality::run(&args),
         Command::Info(args) => info::run(&args),
     };
-    let (code, message) = match result {
+    exit_code(result)
+}
+
+/// The exit code of a command, after a line that says why it stopped.
+fn exit_code(result: Result<(), Failure>) -> ExitCode {
+    let failure = match result {
         Ok(()) => return ExitCode::SUCCESS,
         Err(Failure::Check) => return ExitCode::from(1),
         // Whoever read our output has seen enough.
         Err(Failure::Stdout(error)) if error.kind() == std::io::ErrorKind::BrokenPipe => return ExitCode::SUCCESS,
-        Err(Failure::Stdout(error)) => (2, format!("cannot write to standard output: {error}")),
-        Err(Failure::Bad(message)) => (2, message),
-        Err(Failure::NoAdapter(message)) => (3, message),
+        Err(failure) => failure,
     };
-    eprintln!("catoptric: {message}");
+    let code = if matches!(failure, Failure::NoAdapter(_)) { 3 } else { 2 };
+    tell!("catoptric: {}", printable(&failure.line()));
     ExitCode::from(code)
 }
 
@@ -171,18 +195,34 @@ impl Drop for Steps {
     }
 }
 
-/// Takes away what is not finished when the process is interrupted or terminated, then lets it die of that.
+/// Takes away what is not finished when the process is interrupted, terminated or left by its terminal, then lets it die of that.
+/// Files that grow beyond the limit of the shell (`ulimit -f`) are errors like any other.
 #[cfg(unix)]
 fn discard_unfinished_when_stopped() {
-    use signal_hook::consts::{SIGINT, SIGTERM};
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
+    use std::sync::atomic::AtomicBool;
+    // Nothing to do but not to die: the write fails, and says why.
+    static TOO_LARGE: AtomicBool = AtomicBool::new(false);
+    let _ = signal_hook::flag::register(SIGXFSZ, &TOO_LARGE);
+    let ignored = ignored_signals();
+    let stops = [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|signal| ignored & (1 << (signal - 1)) == 0);
     // Without a handler the worst is a hidden file that stays.
-    let Ok(mut signals) = signal_hook::iterator::Signals::new([SIGINT, SIGTERM]) else { return };
+    let Ok(mut signals) = signal_hook::iterator::Signals::new(stops) else { return };
     std::thread::spawn(move || {
         for signal in signals.forever() {
             crate::output::discard_unfinished();
             let _ = signal_hook::low_level::emulate_default_handler(signal);
         }
     });
+}
+
+/// Signals that whoever started us wants ignored, as `nohup` does, a bit each; none where the system does not say (elsewhere than on
+/// Linux).
+#[cfg(unix)]
+fn ignored_signals() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
 }
 
 #[cfg(not(unix))]

@@ -164,6 +164,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
         check_writable(json)?;
     }
     let rig = args.rig()?;
+    args.pattern.check(&rig)?;
     let mut files = args.rig.files(args.mesh.as_deref(), &rig);
     paths.iter().try_for_each(|path| files.write(path, "-o", "the picture"))?;
     args.json.iter().try_for_each(|path| files.write(path, "--json", "the certificates"))?;
@@ -240,12 +241,12 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
 /// Bytes of the tables, by layout.
 fn say_tables(args: &RenderArgs, surface: &LimitSurface, uploaded: &Tables) {
     if !args.patches.draws_exact() {
-        eprintln!("{:<20} {:>12} bytes", "tables", uploaded.size());
+        tell!("{:<20} {:>12} bytes", "tables", uploaded.size());
         return;
     }
     for layout in TableLayout::ALL {
         let chosen = if layout == uploaded.layout() { ", chosen" } else { "" };
-        eprintln!("{:<20} {:>12} bytes{chosen}", format!("tables {layout}"), tables::bytes(surface, layout));
+        tell!("{:<20} {:>12} bytes{chosen}", format!("tables {layout}"), tables::bytes(surface, layout));
     }
 }
 

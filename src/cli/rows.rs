@@ -1,12 +1,14 @@
 //! CSV files in: rows under a header, every fault with its line.
 
 use super::Failure;
+use crate::line::printable;
+use crate::osd::Location;
 use csv::StringRecord;
 use std::fmt::Display;
 use std::path::Path;
 
 /// A point of the surface, as files name it: ptex face, u, v.
-pub(super) type Place = (u32, f64, f64);
+pub(super) type Place = Location;
 
 /// A CSV file, read whole.
 pub(super) struct Rows<'a> {
@@ -28,10 +30,15 @@ impl<'a> Rows<'a> {
         Ok(Self { path, text })
     }
 
+    /// A text that is in memory already; `path` is its name in messages.
+    pub fn of(path: &'a Path, text: &[u8]) -> Self {
+        Self { path, text: text.to_owned() }
+    }
+
     /// A fault, with its line where it has one.
     pub fn bad(&self, line: Option<u64>, what: impl Display) -> Failure {
         let place = line.map_or(String::new(), |line| format!(":{line}"));
-        Failure::Bad(format!("{}{place}: {what}", self.path.display()))
+        Failure::Bad(printable(&format!("{}{place}: {what}", self.path.display())))
     }
 
     /// Reads the header by `columns`, then every row by `row`; `not_a_row` says what a line that is none should be. Empty lines are

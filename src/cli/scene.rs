@@ -156,7 +156,7 @@ pub(super) fn check_quads(mesh: &SubdivMesh, command: &str) -> Result<(), String
 /// What the reader passed over, on standard error.
 pub(super) fn say_notes(path: Option<&Path>, mesh: &SubdivMesh) {
     for note in &mesh.notes {
-        eprintln!("catoptric: {}: {note}", path.unwrap_or(Path::new("sample")).display());
+        tell!("catoptric: {}: {note}", path.unwrap_or(Path::new("sample")).display());
     }
 }
 

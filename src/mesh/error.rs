@@ -216,6 +216,10 @@ pub enum MeshError {
     UsdUnreadable { at: Place, reason: String },
     #[error("{at}: a part of the stage is missing ({reason}); put the files that it refers to beside it")]
     UsdIncomplete { at: Place, reason: String },
+    #[error(
+        "{at}: the arcs of {prim} lead back to it; break the circle of its inherits, specializes, references and payloads"
+    )]
+    ArcsInCircle { at: Place, prim: String },
     #[error("{at}: the stage has no Mesh prim that is visible and of purpose default or render; give one that has")]
     NoMeshPrims { at: Place },
     #[error("{at}: an OBJ has no prims; leave --prim out, or give a USD file")]

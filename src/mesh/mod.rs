@@ -106,6 +106,14 @@ impl MeshFile {
     }
 }
 
+/// Reads and validates the text of an OBJ that is in memory; `name` is the mesh's, and the file's in messages.
+///
+/// # Errors
+/// As [`read`].
+pub fn parse_obj(text: &[u8], name: &str) -> Result<SubdivMesh, MeshError> {
+    obj::parse(text, name, name)
+}
+
 /// What the subdivision rules do at the boundary of the mesh (OpenSubdiv's `VtxBoundaryInterpolation`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Boundary {

@@ -28,7 +28,7 @@ pub(super) fn read(path: &Path) -> Result<SubdivMesh, MeshError> {
 }
 
 /// Reads and validates the text of an OBJ. `source` is the file's name in messages.
-fn parse(text: &[u8], source: &str, name: &str) -> Result<SubdivMesh, MeshError> {
+pub(super) fn parse(text: &[u8], source: &str, name: &str) -> Result<SubdivMesh, MeshError> {
     if text.is_empty() {
         let at = Place::with(source, Spot::Whole);
         return Err(MeshError::EmptyFile { at });

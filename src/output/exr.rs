@@ -3,13 +3,13 @@
 use super::{MADE_BY, OutputError, write_whole};
 use crate::field::{Camera, Projection};
 use crate::gpu::{LinearFrame, NO_PATCH, PatchSource, SurfaceImage};
+use ::exr::error::Error;
 use ::exr::math::Vec2;
-use ::exr::meta::MetaData;
 use ::exr::prelude::{
     AttributeValue, Encoding, Image, ImageAttributes, Layer, LayerAttributes, SpecificChannels, Text, WritableImage,
 };
 use glam::{DMat4, DVec2, DVec3, DVec4};
-use std::io::BufRead;
+use std::io::{BufRead, Seek};
 use std::path::Path;
 
 /// `ptex.face` of a pixel that sees no surface.
@@ -134,18 +134,31 @@ pub fn write_exr(path: &Path, layers: &Layers<'_>) -> Result<(), OutputError> {
         .with_pixel_fn(pixel);
     let layer = Layer::new((width as usize, height as usize), attributes, Encoding::SMALL_LOSSLESS, channels);
     let image = Image::new(ImageAttributes::with_size((width as usize, height as usize)), layer);
-    write_whole(path, |out| image.write().to_buffered(out).map_err(std::io::Error::other))
+    write_whole(path, |out| image.write().to_buffered(out).map_err(plain))
+}
+
+/// What the system said, where it is the system's fault.
+fn plain(error: Error) -> std::io::Error {
+    match error {
+        Error::Io(error) => error,
+        other => std::io::Error::other(other),
+    }
 }
 
 /// The attribute of an EXR file that says how it was made; `None` where it has none.
 ///
 /// # Errors
-/// The file cannot be read or is no EXR.
-pub fn read_exr_made_by(file: impl BufRead) -> std::io::Result<Option<String>> {
-    let meta = MetaData::read_from_buffered(file, false).map_err(std::io::Error::other)?;
-    let found = meta.headers.iter().find_map(|header| header.own_attributes.other.get(MADE_BY.as_bytes()));
-    Ok(match found {
+/// The file cannot be read, is no EXR, or ends too early.
+pub fn read_exr_made_by(file: impl BufRead + Seek) -> std::io::Result<Option<String>> {
+    let reader = ::exr::block::read(file, false).map_err(plain)?;
+    let found = reader.headers().iter().find_map(|header| header.own_attributes.other.get(MADE_BY.as_bytes()));
+    let made_by = match found {
         Some(AttributeValue::Text(text)) => String::from_utf8(text.as_slice().to_vec()).ok(),
         _ => None,
-    })
+    };
+    // Read, but not unpacked.
+    for chunk in reader.all_chunks(false).map_err(plain)? {
+        chunk.map_err(plain)?;
+    }
+    Ok(made_by)
 }

@@ -1,7 +1,7 @@
 //! PNG pictures.
 
 use super::{MADE_BY, OutputError, write_whole};
-use std::io::{BufRead, Seek};
+use std::io::{BufRead, Seek, SeekFrom};
 use std::path::Path;
 
 /// Writes an 8-bit sRGB picture, rows from top to bottom, 4 bytes a pixel, with a text (keyword [`MADE_BY`]) that says how
@@ -17,21 +17,38 @@ pub fn write_png(path: &Path, size: [u32; 2], rgba8: &[u8], made_by: &str) -> Re
         // Adaptive filters pay on smooth shading; the fast level costs a tenth of the size and a third of the time.
         encoder.set_compression(png::Compression::Fast);
         encoder.set_filter(png::Filter::Adaptive);
-        encoder.add_itxt_chunk(MADE_BY.to_owned(), made_by.to_owned())?;
-        let mut writer = encoder.write_header()?;
-        writer.write_image_data(rgba8)?;
-        Ok(writer.finish()?)
+        let write = || {
+            encoder.add_itxt_chunk(MADE_BY.to_owned(), made_by.to_owned())?;
+            let mut writer = encoder.write_header()?;
+            writer.write_image_data(rgba8)?;
+            writer.finish()
+        };
+        write().map_err(plain)
     })
+}
+
+/// What the system said, where it is the system's fault.
+fn plain(error: png::EncodingError) -> std::io::Error {
+    match error {
+        png::EncodingError::IoError(error) => error,
+        other => other.into(),
+    }
 }
 
 /// The text of a PNG file that says how it was made; `None` where it has none.
 ///
 /// # Errors
-/// The file cannot be read or is no PNG.
-pub fn read_png_made_by(file: impl BufRead + Seek) -> std::io::Result<Option<String>> {
-    let reader = png::Decoder::new(file).read_info()?;
+/// The file cannot be read, is no PNG, or ends too early.
+pub fn read_png_made_by(mut file: impl BufRead + Seek) -> std::io::Result<Option<String>> {
+    /// The last chunk, which is always the same.
+    const END: [u8; 12] = *b"\0\0\0\0IEND\xaeB`\x82";
+    let reader = png::Decoder::new(&mut file).read_info()?;
     let texts = &reader.info().utf8_text;
-    Ok(texts.iter().find(|text| text.keyword == MADE_BY).and_then(|text| text.get_text().ok()))
+    let made_by = texts.iter().find(|text| text.keyword == MADE_BY).and_then(|text| text.get_text().ok());
+    let mut end = [0; END.len()];
+    file.seek(SeekFrom::End(-(END.len() as i64)))?;
+    file.read_exact(&mut end)?;
+    if end == END { Ok(made_by) } else { Err(std::io::Error::other("it ends too early")) }
 }
 
 /// An opaque picture as the bytes of a PNG file: as small as they come, with a palette where 256 colours are enough.

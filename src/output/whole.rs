@@ -6,12 +6,21 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Why a file was not written. Whatever stood at the path before still stands there.
 #[derive(Debug, thiserror::Error)]
-#[error("{}: cannot write: {source}; choose a writable path", path.display())]
+#[error("{}: cannot write: {source}; {}", path.display(), remedy(source))]
 pub struct OutputError {
     /// Destination.
     pub path: PathBuf,
     /// What the system said.
     pub source: std::io::Error,
+}
+
+/// What to do about it.
+fn remedy(error: &std::io::Error) -> &'static str {
+    use std::io::ErrorKind::{FileTooLarge, QuotaExceeded, StorageFull};
+    match error.kind() {
+        StorageFull | QuotaExceeded | FileTooLarge => "make room, or write elsewhere",
+        _ => "choose a writable path",
+    }
 }
 
 /// What a file's content is written to; formats with an index go back to fill it in.
@@ -112,11 +121,11 @@ pub fn write_whole(
             return writer.flush();
         }
         let (file, _unfinished) = begin(path)?;
-        let mut writer = BufWriter::new(file);
+        // The file itself: errors of the temporary one would name it.
+        let mut writer = BufWriter::new(file.as_file());
         content(&mut writer)?;
-        let file = writer.into_inner().map_err(std::io::IntoInnerError::into_error)?;
-        file.as_file().sync_all()?;
-        file.persist(path)?;
+        writer.into_inner().map_err(std::io::IntoInnerError::into_error)?.sync_all()?;
+        file.persist(path).map_err(|error| error.error)?;
         Ok(())
     };
     write().map_err(|source| OutputError { path: path.to_owned(), source })

@@ -2,6 +2,7 @@
 
 use super::{PatternName, Rig, RigError};
 use crate::field::Method;
+use crate::line::printable;
 use std::path::{Path, PathBuf};
 
 /// How a file is written.
@@ -46,7 +47,7 @@ impl RigFormat {
     }
 
     /// The rig in a text, or the line of a fault and what it is.
-    fn parse(self, text: &str) -> Result<Rig, (Option<usize>, String)> {
+    fn deserialize(self, text: &str) -> Result<Rig, (Option<usize>, String)> {
         match self {
             RigFormat::Toml => toml::from_str(text).map_err(|error| {
                 let line = error.span().map(|span| line_of(text, span.start));
@@ -107,10 +108,7 @@ impl Rig {
         })?;
         let text = std::fs::read_to_string(path)
             .map_err(|e| error(None, format!("cannot read the light rig ({e}); give a TOML or JSON file")))?;
-        let mut rig = format.parse(&text).map_err(|(line, what)| error(line, format!("{what}; see docs/RIGS.md")))?;
-        // With the preset's word, as every picture has it.
-        let whole = rig.clone().with_preset();
-        whole.check().map_err(|e| error(line_of_key(&text, e.key, format), e.to_string()))?;
+        let mut rig = Rig::parse(&text, format, path)?;
         if let Some(PatternName::File(picture)) = &mut rig.pattern.name {
             let found = path.parent().unwrap_or(Path::new("")).join(&*picture);
             if !found.is_file() {
@@ -124,6 +122,21 @@ impl Rig {
             grid.set_path(path.parent().unwrap_or(Path::new("")).join(grid.path()));
             grid.read().map_err(|what| error(line_of_key(&text, "field", format), format!("field: {what}")))?;
         }
+        Ok(rig)
+    }
+
+    /// Reads a text; `path` is its name in messages. Pictures are not looked for.
+    ///
+    /// # Errors
+    /// It is no rig, or contradicts itself: one line, with the number of the line in question.
+    pub fn parse(text: &str, format: RigFormat, path: &Path) -> Result<Rig, RigFileError> {
+        let error = |line, problem| RigFileError { path: path.to_owned(), line, problem };
+        let rig = format
+            .deserialize(text)
+            .map_err(|(line, what)| error(line, format!("{}; see docs/RIGS.md", printable(&what))))?;
+        // With the preset's word, as every picture has it.
+        let whole = rig.clone().with_preset();
+        whole.check().map_err(|e| error(line_of_key(text, e.key, format), e.to_string()))?;
         Ok(rig)
     }
 

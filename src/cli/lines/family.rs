@@ -223,7 +223,7 @@ impl Family {
     /// Says on standard error where not all lights are drawn.
     pub fn say(&self) {
         if let Some((all, [first, last])) = self.left_out {
-            eprintln!(
+            tell!(
                 "lines: the surface shows some {all} lights; these are numbers {first} to {last}, in the middle of what is seen: \
                  --lights chooses others, --light-spacing and --count put them farther apart"
             );

@@ -221,7 +221,7 @@ fn say(curves: &[Curve], tolerance: f64) {
     lights.dedup();
     // The sum of nothing is -0, which would be written so.
     let length = curves.iter().map(Curve::length).sum::<f64>() + 0.0;
-    eprintln!(
+    tell!(
         "lines: {} curves of {} lights, {closed} of them closed, {points} points, {length:.6} world units long; chords within \
          {tolerance:.1e}",
         curves.len(),

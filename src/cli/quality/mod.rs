@@ -165,6 +165,7 @@ pub(super) fn run(args: &QualityArgs) -> Result<(), Failure> {
     let mut account = Account::default();
     args.rig.check()?;
     let rig = args.rig()?;
+    args.pattern.check(&rig)?;
     args.check_files(&rig)?;
     let pattern = rig.pattern.read(&rig.method()).map_err(Failure::Bad)?;
     let bar = progress("measuring".to_owned());

@@ -67,7 +67,18 @@ impl Columns {
 
 /// Reads answers, every row checked.
 pub(super) fn read(path: &Path, faces: usize) -> Result<Vec<Answer>, Failure> {
-    let rows = Rows::open(path, "answers", NEEDED)?;
+    of(&Rows::open(path, "answers", NEEDED)?, faces)
+}
+
+/// Reads the answers of a text as `verify --results` does; `name` is the file's in messages, `faces` the number of ptex faces.
+///
+/// # Errors
+/// What is wrong with which line, and what to do: one line.
+pub fn parse_answers(text: &[u8], name: &Path, faces: usize) -> Result<Vec<Answer>, String> {
+    of(&Rows::of(name, text), faces).map_err(Failure::line)
+}
+
+fn of(rows: &Rows<'_>, faces: usize) -> Result<Vec<Answer>, Failure> {
     let answers = rows.read(
         Columns::of,
         "it has more or fewer fields than the header, or is not text; correct it",

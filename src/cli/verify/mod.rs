@@ -14,6 +14,7 @@ use crate::osd::Location;
 use crate::output::check_writable;
 use crate::page::{Pictures, page};
 use crate::verify::{Baseline, MeshReport, Refused, Report, Sample, only};
+pub use answers::parse_answers;
 pub(super) use conformance::ConformanceArgs;
 use inputs::Input;
 use many::{Job, Outcome};

@@ -70,6 +70,10 @@ static FUNCTIONS: [Function; 14] = [
 
 /// Deepest nesting: a reader by recursion must not run out of stack.
 const DEEPEST: usize = 64;
+/// Most characters of an expression.
+const LONGEST: usize = 4096;
+/// Most operands, with whole powers multiplied out as shaders have them.
+const LARGEST: usize = 10_000;
 
 impl Expression {
     /// Its value at a point; not finite where it has none.
@@ -94,8 +98,14 @@ impl FromStr for Expression {
 
     fn from_str(text: &str) -> Result<Self, ExpressionError> {
         let mut reader = Reader { text, at: 0, depth: 0 };
+        if text.len() > LONGEST {
+            return Err(reader.error(format!("more than {LONGEST} characters")));
+        }
         let root = reader.sum()?;
         match reader.peek() {
+            None if root.size() > LARGEST => {
+                Err(reader.error(format!("more than {LARGEST} operands when its powers are multiplied out")))
+            }
             None => Ok(Expression { text: text.to_owned(), root }),
             Some(c) => Err(reader.error(format!("{c} does not belong here"))),
         }
@@ -125,6 +135,22 @@ impl Node {
         }
     }
 
+    /// Number of operands, with whole powers multiplied out.
+    fn size(&self) -> usize {
+        let power = |base: &Node, exponent: &Node| match factors(exponent) {
+            Some(count) => base.size().saturating_mul(count),
+            None => base.size().saturating_add(exponent.size()),
+        };
+        match self {
+            Node::Number(_) | Node::X | Node::Y => 1,
+            Node::Negative(a) => a.size(),
+            Node::Binary('^', sides) => power(&sides[0], &sides[1]),
+            Node::Binary(_, sides) => sides[0].size().saturating_add(sides[1].size()),
+            Node::Call(Function { name: "pow", .. }, arguments) => power(&arguments[0], &arguments[1]),
+            Node::Call(_, arguments) => arguments.iter().fold(0, |sum, argument| argument.size().saturating_add(sum)),
+        }
+    }
+
     fn wgsl(&self) -> String {
         match self {
             // Infinite literals are none in WGSL.
@@ -133,7 +159,13 @@ impl Node {
             Node::Y => "y".to_owned(),
             Node::Negative(a) => format!("(-{})", a.wgsl()),
             Node::Binary('^', sides) => power(&sides[0].wgsl(), &sides[1]),
-            Node::Binary(operator, sides) => format!("({} {operator} {})", sides[0].wgsl(), sides[1].wgsl()),
+            Node::Binary(operator, sides) => {
+                let left = sides[0].wgsl();
+                // A row of the same rank is one: nested as deep as it is long, it would be too deep for a shader.
+                let row = matches!(&sides[0], Node::Binary(before, _) if rank(*before) == rank(*operator));
+                let left = if row { &left[1..left.len() - 1] } else { &left };
+                format!("({left} {operator} {})", sides[1].wgsl())
+            }
             Node::Call(Function { name: "pow", .. }, arguments) => power(&arguments[0].wgsl(), &arguments[1]),
             Node::Call(Function { name, .. }, arguments) => {
                 format!("{name}({})", arguments.iter().map(Node::wgsl).collect::<Vec<_>>().join(", "))
@@ -142,13 +174,28 @@ impl Node {
     }
 }
 
+/// Operators of one rank are read from left to right.
+fn rank(operator: char) -> u8 {
+    match operator {
+        '+' | '-' => 0,
+        '*' | '/' => 1,
+        _ => 2,
+    }
+}
+
 /// WGSL's `pow` has no negative bases; whole exponents, as in x^2, need it none.
 fn power(base: &str, exponent: &Node) -> String {
+    match factors(exponent) {
+        Some(count) => format!("({})", vec![base; count].join(" * ")),
+        None => format!("pow({base}, {})", exponent.wgsl()),
+    }
+}
+
+/// How many factors a power is multiplied out to; `None` where it is not.
+fn factors(exponent: &Node) -> Option<usize> {
     match exponent {
-        Node::Number(n) if n.fract() == 0.0 && (1.0..=8.0).contains(n) => {
-            format!("({})", vec![base; *n as usize].join(" * "))
-        }
-        exponent => format!("pow({base}, {})", exponent.wgsl()),
+        Node::Number(n) if n.fract() == 0.0 && (1.0..=8.0).contains(n) => Some(*n as usize),
+        _ => None,
     }
 }
 
@@ -334,7 +381,10 @@ mod tests {
             let error = text.parse::<Expression>().expect_err(text);
             assert_eq!(error.at, at, "{text}: {error}");
         }
-        for text in [deep, tower] {
+        let long = vec!["x"; 50_000].join("+");
+        // Multiplied out it would fill memory.
+        let powers = format!("{}x{}", "(".repeat(20), "^8)".repeat(20));
+        for text in [deep, tower, long, powers] {
             assert!(text.parse::<Expression>().is_err());
         }
     }
@@ -345,5 +395,9 @@ mod tests {
         assert_eq!(wgsl("x^2 - y/3"), "((x * x) - (y / 3.0))");
         assert_eq!(wgsl("-pow(x, 0.5)"), "(-pow(x, 0.5))");
         assert_eq!(wgsl("1e300"), "3.4028235e38");
+        assert_eq!(wgsl("x - y + 1 - x*y/2*x"), "(x - y + 1.0 - (x * y / 2.0 * x))");
+        assert_eq!(wgsl("x - (y - 1)"), "(x - (y - 1.0))");
+        // naga nests 127 deep.
+        assert!(!wgsl(&vec!["x"; 2000].join("+")).contains("(("));
     }
 }

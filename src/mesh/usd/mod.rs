@@ -8,8 +8,11 @@
 //!
 //! Schema: `UsdGeomMesh`, `UsdGeomImageable` and `UsdGeomXformable` of OpenUSD.
 
+mod circles;
 mod instancer;
 mod instances;
+mod nesting;
+mod open;
 mod prim;
 mod scene;
 mod value;
@@ -84,7 +87,7 @@ impl File {
         let unreadable = |error: openusd::Error| MeshError::UsdUnreadable { at: at(), reason: one_line(&error) };
         let absolute = std::path::absolute(path).map_err(|error| MeshError::Unreadable { at: at(), error })?;
         let absolute = absolute.to_str().ok_or_else(|| MeshError::PathNotText { at: at() })?;
-        let stage = Stage::open(absolute).map_err(unreadable)?;
+        let stage = open::open(absolute, &path.display().to_string())?;
         let mut paths = Vec::new();
         stage.traverse(PrimPredicate::DEFAULT_PROXIES, |path| paths.push(path.clone())).map_err(unreadable)?;
         if let Some(error) = stage.composition_errors().first() {
