@@ -7,7 +7,7 @@ use super::field::{ColourArgs, FieldArgs, PatternArgs};
 use super::frames::FramesArgs;
 use super::patches::PatchesArgs;
 use super::rig::RigArgs;
-use super::scene::{AnimationArgs, Source, check_quads, say_notes};
+use super::scene::{AnimationArgs, Source, say_notes};
 use super::settings::{MeshAt, made_by, mesh_digest};
 use super::{Failure, Steps, progress};
 use crate::field::{CurvatureKind, Method, Pattern, PlaneCurve, Scout};
@@ -293,7 +293,6 @@ enum Surface {
 
 impl Body {
     fn new(mesh: SubdivMesh, moves: bool) -> Result<Self, Failure> {
-        check_quads(&mesh, "render").map_err(Failure::Bad)?;
         let surface = match moves {
             true => MovingSurface::new(&mesh).map(|surface| Surface::Moving(Box::new(surface))),
             false => LimitSurface::new(&mesh).map(Surface::Still),

@@ -5,7 +5,7 @@ use super::charts::BAND;
 use super::records::ChartRecord;
 use super::tables::TABLE_LEVELS;
 use crate::field::{Method, colours};
-use crate::stam::LEVELS;
+use crate::stam::{LEVELS, box_spline};
 
 /// Kind of a patch of 16 points.
 pub const KIND_REGULAR: u32 = 0;
@@ -38,6 +38,8 @@ pub const TABLE_WIDTH: u32 = 4096;
 pub const BLOCK_ROWS: u32 = 8192;
 /// Texels of one level of an irregular patch: 9 rows of 4 points, x, y and z each.
 pub const LEVEL_TEXELS: u32 = 27;
+/// Texels of one level of an irregular triangle, and of a regular one: 16 points.
+pub const TRIANGLE_TEXELS: u32 = 12;
 /// Texels of a chart.
 pub const CHART_TEXELS: u32 = (size_of::<ChartRecord>() / 16) as u32;
 /// How a sample came to its point: not at all.
@@ -67,6 +69,8 @@ pub(super) enum Content {
     Tails,
     /// Regular patches, levels and Gregory patches.
     Gregory,
+    /// Triangles.
+    Triangles,
     /// As `Points`, some patches others in another place.
     Instances,
     /// As `Tails`, likewise.
@@ -74,7 +78,8 @@ pub(super) enum Content {
 }
 
 impl Content {
-    pub const ALL: [Self; 5] = [Self::Points, Self::Tails, Self::Gregory, Self::Instances, Self::InstancesWithTails];
+    pub const ALL: [Self; 6] =
+        [Self::Points, Self::Tails, Self::Gregory, Self::Triangles, Self::Instances, Self::InstancesWithTails];
 
     /// Whether levels may be given by picked points.
     pub fn has_tail(self) -> bool {
@@ -82,8 +87,13 @@ impl Content {
     }
 
     pub fn variant(self, block_rows: u32) -> Variant {
-        let has_instances = matches!(self, Self::Instances | Self::InstancesWithTails);
-        Variant { block_rows, has_tail: self.has_tail(), has_gregory: self == Self::Gregory, has_instances }
+        Variant {
+            block_rows,
+            has_tail: self.has_tail(),
+            has_gregory: self == Self::Gregory,
+            has_instances: matches!(self, Self::Instances | Self::InstancesWithTails),
+            triangles: self == Self::Triangles,
+        }
     }
 }
 
@@ -95,6 +105,7 @@ pub(super) struct Variant {
     pub has_tail: bool,
     pub has_gregory: bool,
     pub has_instances: bool,
+    pub triangles: bool,
 }
 
 /// One shader module: its name, the files that it consists of, and its entry points.
@@ -111,8 +122,14 @@ impl Module {
     pub fn source(&self, method: &Method) -> String {
         // Levels that are given by picked points have no second derivatives.
         let has_tail = !method.reads_curvature();
-        let variant = Variant { block_rows: BLOCK_ROWS, has_tail, has_gregory: true, has_instances: true };
+        let variant =
+            Variant { block_rows: BLOCK_ROWS, has_tail, has_gregory: true, has_instances: true, triangles: false };
         self.source_for(&variant, &method.wgsl())
+    }
+
+    /// The same for tables of triangles.
+    pub fn source_for_triangles(&self, method: &Method) -> String {
+        self.source_for(&Content::Triangles.variant(BLOCK_ROWS), &method.wgsl())
     }
 
     /// Whether it depends on the field.
@@ -127,7 +144,11 @@ impl Module {
             source.push_str("const READS_CURVATURE = false;\n");
         }
         for &file in self.files {
-            source.push_str(if file == FIELD { field } else { file });
+            source.push_str(match file {
+                FIELD => field,
+                LIMIT_POINT if variant.triangles => TRIANGLE_POINT,
+                file => file,
+            });
         }
         source
     }
@@ -135,6 +156,8 @@ impl Module {
 
 const RECORDS: &str = include_str!("../../shaders/shared/records.wgsl");
 const TABLES: &str = include_str!("../../shaders/shared/tables.wgsl");
+const LIMIT_VALUE: &str = include_str!("../../shaders/shared/limit_value.wgsl");
+const TRIANGLE_POINT: &str = include_str!("../../shaders/shared/triangle_point.wgsl");
 const LIMIT_POINT: &str = include_str!("../../shaders/shared/limit_point.wgsl");
 const BASIS: &str = include_str!("../../shaders/shared/basis.wgsl");
 const GREGORY: &str = include_str!("../../shaders/shared/gregory.wgsl");
@@ -152,8 +175,10 @@ const LIGHT: &str = include_str!("../../shaders/field/light.wgsl");
 const FIELD: &str = "field";
 
 /// Rasterises the proxy.
-pub const VISIBILITY: Module =
-    Module { name: "visibility", files: &[RECORDS, TABLES, BASIS, GREGORY, CURVATURE, LIMIT_POINT, VISIBILITY_PASS] };
+pub const VISIBILITY: Module = Module {
+    name: "visibility",
+    files: &[RECORDS, TABLES, BASIS, GREGORY, CURVATURE, LIMIT_VALUE, LIMIT_POINT, VISIBILITY_PASS],
+};
 /// What the proxy covers.
 pub const RECTANGLE: Module = Module {
     name: "rectangle",
@@ -163,6 +188,7 @@ pub const RECTANGLE: Module = Module {
         BASIS,
         GREGORY,
         CURVATURE,
+        LIMIT_VALUE,
         LIMIT_POINT,
         VISIBILITY_PASS,
         include_str!("../../shaders/rectangle.wgsl"),
@@ -177,6 +203,7 @@ pub const POINTS: Module = Module {
         BASIS,
         GREGORY,
         CURVATURE,
+        LIMIT_VALUE,
         LIMIT_POINT,
         VISIBILITY_PASS,
         FULLSCREEN,
@@ -192,6 +219,7 @@ pub const LIMIT: Module = Module {
         BASIS,
         GREGORY,
         CURVATURE,
+        LIMIT_VALUE,
         LIMIT_POINT,
         LIGHT,
         FIELD,
@@ -217,7 +245,16 @@ pub const RESOLVE: Module =
 /// Limit at samples.
 pub const EVALUATE: Module = Module {
     name: "evaluate",
-    files: &[RECORDS, TABLES, BASIS, GREGORY, CURVATURE, LIMIT_POINT, include_str!("../../shaders/evaluate.wgsl")],
+    files: &[
+        RECORDS,
+        TABLES,
+        BASIS,
+        GREGORY,
+        CURVATURE,
+        LIMIT_VALUE,
+        LIMIT_POINT,
+        include_str!("../../shaders/evaluate.wgsl"),
+    ],
 };
 
 /// Samples solved on the host.
@@ -245,7 +282,7 @@ fn constants(variant: &Variant) -> String {
         ("TABLE_WIDTH", TABLE_WIDTH),
         ("BLOCK_ROWS", variant.block_rows),
         ("TABLE_LEVELS", TABLE_LEVELS as u32),
-        ("LEVEL_TEXELS", LEVEL_TEXELS),
+        ("LEVEL_TEXELS", if variant.triangles { TRIANGLE_TEXELS } else { LEVEL_TEXELS }),
         ("CENTRE_LEVEL", LEVELS as u32),
         ("NO_PATCH", NO_PATCH),
         ("CHART_TEXELS", CHART_TEXELS),
@@ -264,7 +301,25 @@ fn constants(variant: &Variant) -> String {
         text.push_str(&format!("const {name} = array({});\n", ramp.map(vector).join(", ")));
     }
     text.push_str(&format!("const UNDEFINED_COLOUR = {};\n", vector(colours::UNDEFINED)));
+    if variant.triangles {
+        let columns: Vec<String> = box_spline_columns().iter().map(|c| format!("{c:?}")).collect();
+        let matrices = columns.chunks(16).map(|matrix| format!("mat4x4f({})", matrix.join(", ")));
+        let matrices: Vec<String> = matrices.collect();
+        text.push_str(&format!("const BOX_SPLINE = array({});\n", matrices.join(", ")));
+    }
     let has = [("TAIL", variant.has_tail), ("GREGORY", variant.has_gregory), ("INSTANCES", variant.has_instances)];
     text.extend(has.map(|(name, is)| format!("const HAS_{name} = {is};\n")));
     text
+}
+
+/// For each group of 4 control points of a triangle and each group of 4 Bezier points, the matrix that gives the weights of the
+/// former from those of the latter, column by column.
+fn box_spline_columns() -> Vec<f32> {
+    let mut columns = Vec::with_capacity(12 * 16);
+    for (controls, bezier) in (0..3).flat_map(|g| (0..4).map(move |q| (g, q))) {
+        for (column, row) in (0..4).flat_map(|column| (0..4).map(move |row| (column, row))) {
+            columns.push(box_spline::bezier_weight(4 * bezier + column, 4 * controls + row) as f32);
+        }
+    }
+    columns
 }

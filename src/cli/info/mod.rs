@@ -90,7 +90,7 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), Failure> {
     let control = Refiner::uniform(&mesh, 1).and_then(|r| r.level(0)).map_err(|e| Failure::of(&mesh, e))?;
     let mut info = collect(&mesh, &surface, &control);
     let deepest = args.levels.unwrap_or(if mesh.face_count() <= MANY_FACES { MAX_ISOLATION } else { 3 });
-    // OpenSubdiv's patches of triangles are not read, and there are no tables of them.
+    // OpenSubdiv's patches of triangles are not read.
     let deepest = if surface.has_triangles() { 0 } else { deepest };
     let levels = (1..=deepest).map(|level| AdaptiveLevel::new(&mesh, &surface, level));
     info.opensubdiv = levels.collect::<Result<_, _>>().map_err(|e| Failure::of(&mesh, e))?;
@@ -103,7 +103,6 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), Failure> {
 }
 
 fn collect(mesh: &SubdivMesh, surface: &LimitSurface, control: &Level) -> Info {
-    let triangles = surface.has_triangles();
     let mut info = Info {
         mesh: mesh.name.clone(),
         meters_per_unit: mesh.meters_per_unit,
@@ -117,10 +116,9 @@ fn collect(mesh: &SubdivMesh, surface: &LimitSurface, control: &Level) -> Info {
         classes: surface.classes().len(),
         stored_patches: surface.stored_patches(),
         class_table_bytes: surface.tables().iter().map(|table| table.bytes()).sum(),
-        gpu_table_bytes: if triangles { 0 } else { gpu::tables::bytes(surface, gpu::TableLayout::Auto) },
+        gpu_table_bytes: gpu::tables::bytes(surface, gpu::TableLayout::Auto),
         gpu_table_bytes_by_layout: gpu::TableLayout::ALL
             .iter()
-            .filter(|_| !triangles)
             .map(|&layout| (layout.to_string(), gpu::tables::bytes(surface, layout)))
             .collect(),
         scheme: mesh.scheme.name(),

@@ -2,7 +2,7 @@
 
 use super::basis::Basis;
 use super::{PatchSource, Storage, TABLE_LEVELS};
-use crate::gpu::shader::{LEVEL_TEXELS, SCALE_LEVELS};
+use crate::gpu::shader::{LEVEL_TEXELS, SCALE_LEVELS, TRIANGLE_TEXELS};
 use glam::DAffine3;
 use rayon::prelude::*;
 use std::collections::HashSet;
@@ -92,6 +92,8 @@ pub(super) struct Plan {
     pub bases: Arc<Vec<Option<Basis>>>,
     /// Some patches are [`Storage::Gregory`].
     pub has_gregory: bool,
+    /// Patches are triangles.
+    pub has_triangles: bool,
     /// What moves instances; none where there are more than records can count, so that every patch has its own points.
     pub transforms: Vec<DAffine3>,
     /// Texels in the table of points: transforms and matrices first, then patches.
@@ -140,12 +142,14 @@ impl Plan {
         transforms: Vec<DAffine3>,
     ) -> Plan {
         let expanded = layout.expanded_levels();
+        let has_triangles = census.triangles + census.irregular_triangles > 0;
         let mut plan = Plan {
             layout,
             expanded,
             bases,
             has_gregory,
             transforms,
+            has_triangles,
             texels: 0,
             bytes: 0,
             matrices: 0,
@@ -156,12 +160,16 @@ impl Plan {
             census.classes.iter().enumerate().map(|(class, &count)| count * plan.irregular_texels(Some(class))).sum();
         let rest = census.regular * REGULAR_TEXELS
             + census.gregory * GREGORY_TEXELS
-            + census.classless * plan.irregular_texels(None);
+            + census.classless * plan.irregular_texels(None)
+            + census.triangles * plan.patch_texels(Storage::Triangle, None)
+            + census.irregular_triangles * plan.patch_texels(Storage::IrregularTriangle, None);
         plan.texels = (plan.transforms.len() * TRANSFORM_TEXELS + matrices + irregular + rest) as u64;
         plan.matrices = 16 * matrices as u64;
         let classes = census.classes.iter().enumerate().filter(|&(_, &count)| count > 0).map(|(class, _)| Some(class));
         let irregular = classes.chain((census.classless > 0).then_some(None)).map(|class| plan.irregular_texels(class));
-        plan.largest_patch = 16 * (1 + irregular.max().unwrap_or(0).max(GREGORY_TEXELS) as u64);
+        let triangle = plan.patch_texels(Storage::IrregularTriangle, None);
+        let triangle = if census.irregular_triangles > 0 { triangle } else { 0 };
+        plan.largest_patch = 16 * (1 + irregular.max().unwrap_or(0).max(triangle).max(GREGORY_TEXELS) as u64);
         plan.bytes =
             16 * (census.patches as u64 + plan.texels) + 8 * u64::from(SCALE_LEVELS) * census.eigenvalues as u64;
         plan
@@ -178,6 +186,8 @@ impl Plan {
             Storage::Regular => REGULAR_TEXELS,
             Storage::Gregory => GREGORY_TEXELS,
             Storage::Irregular => self.irregular_texels(class),
+            Storage::Triangle => TRIANGLE_TEXELS as usize,
+            Storage::IrregularTriangle => TABLE_LEVELS * TRIANGLE_TEXELS as usize + 1,
         }
     }
 
@@ -225,6 +235,8 @@ struct Census {
     classes: Vec<usize>,
     /// Irregular patches without a class.
     classless: usize,
+    triangles: usize,
+    irregular_triangles: usize,
     /// Different values of lambda.
     eigenvalues: usize,
 }
@@ -237,6 +249,8 @@ impl Census {
             gregory: 0,
             classes: vec![0; source.classes().len()],
             classless: 0,
+            triangles: 0,
+            irregular_triangles: 0,
             eigenvalues: 0,
         };
         let mut eigenvalues = HashSet::new();
@@ -250,9 +264,11 @@ impl Census {
                     eigenvalues.insert(source.classes()[class].lambda.to_bits());
                 }
                 (Storage::Irregular, None) => census.classless += 1,
+                (Storage::Triangle, _) => census.triangles += 1,
+                (Storage::IrregularTriangle, _) => census.irregular_triangles += 1,
             }
         }
-        census.eigenvalues = eigenvalues.len() + usize::from(census.classless > 0);
+        census.eigenvalues = eigenvalues.len() + usize::from(census.classless + census.irregular_triangles > 0);
         census
     }
 }

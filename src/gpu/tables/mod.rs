@@ -87,6 +87,11 @@ impl Tables {
         self.cells.iter().map(|&([u, v], _)| 0.5f64.powi(i32::from(u) + i32::from(v))).sum()
     }
 
+    /// Whether patches are triangles.
+    pub fn has_triangles(&self) -> bool {
+        self.plan.has_triangles
+    }
+
     /// Box round the surface.
     pub fn bounds(&self) -> [DVec3; 2] {
         self.bounds
@@ -106,6 +111,7 @@ impl Tables {
     pub(super) fn content(&self) -> Content {
         let has_instances = !self.plan.transforms.is_empty();
         match self.plan.layout {
+            _ if self.plan.has_triangles => Content::Triangles,
             _ if self.plan.has_gregory => Content::Gregory,
             TableLayout::Expanded if has_instances => Content::Instances,
             TableLayout::Expanded => Content::Points,
