@@ -5,7 +5,7 @@ use super::class::{ClassTable, WINDOW_POINTS};
 use super::instances::{Instances, Placed};
 use super::loop_rows::LOOP_WINDOW;
 use crate::mesh::SubdivMesh;
-use crate::patch::{Adjacency, PHANTOM, Patch, PatchError, PatchKind, Patches, Refinement, RingClass, slot};
+use crate::patch::{Adjacency, PHANTOM, Patch, PatchError, PatchKind, Patches, Refinement, RingClass, Watch, slot};
 use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -58,16 +58,24 @@ impl LimitSurface {
     /// # Errors
     /// The mesh is not valid, OpenSubdiv refuses it, or a face stays without a closed form.
     pub fn new(mesh: &SubdivMesh) -> Result<Self, PatchError> {
-        let Some(originals) = mesh.originals() else { return Self::flat(mesh) };
+        Self::watched(mesh, &|_, _| ())
+    }
+
+    /// As [`new`](Self::new); `watch` is told how far it is.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn watched(mesh: &SubdivMesh, watch: Watch<'_>) -> Result<Self, PatchError> {
+        let Some(originals) = mesh.originals() else { return Self::flat(mesh, watch) };
         mesh.validate_points().map_err(crate::osd::Error::from)?;
-        let stored = Self::flat(&originals.mesh)?;
+        let stored = Self::flat(&originals.mesh, watch)?;
         let instances = Instances::new(mesh, &originals, &stored.patches);
         Ok(Self { instances: Some(Arc::new(instances)), diagonal: mesh.diagonal(), ..stored })
     }
 
-    /// As [`new`](Self::new), with everything stored as often as it is there.
-    pub(crate) fn flat(mesh: &SubdivMesh) -> Result<Self, PatchError> {
-        let (patches, points) = Patches::with_points(mesh)?;
+    /// As [`watched`](Self::watched), with everything stored as often as it is there.
+    pub(crate) fn flat(mesh: &SubdivMesh, watch: Watch<'_>) -> Result<Self, PatchError> {
+        let (patches, points) = Patches::with_points(mesh, watch)?;
         Ok(Self::of(patches, points, mesh))
     }
 
@@ -128,6 +136,12 @@ impl LimitSurface {
     /// Index into [`classes`](Self::classes) of an irregular patch.
     pub fn class(&self, patch: usize) -> Option<usize> {
         self.patches.class(self.stored(patch).0)
+    }
+
+    /// Bytes of patches and points; tables of classes are small beside them.
+    pub fn bytes(&self) -> u64 {
+        let instances = self.instances.as_ref().map_or(0, |instances| size_of_val(instances.patches()));
+        self.patches.bytes() + (size_of_val(&self.points[..]) + instances) as u64
     }
 
     /// Number of ptex faces, holes included.

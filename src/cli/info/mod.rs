@@ -5,7 +5,7 @@ mod adaptive;
 use adaptive::AdaptiveLevel;
 
 use super::args::InfoArgs;
-use super::{Failure, write_out};
+use super::{Failure, progress, refined, write_out};
 use crate::gpu;
 use crate::mesh::{Boundary, Creasing, Part, SubdivMesh};
 use crate::osd::{INFINITE_SHARPNESS, Level, MAX_ISOLATION, Refiner, Rule};
@@ -86,7 +86,7 @@ struct Prim {
 
 pub(super) fn run(args: &InfoArgs) -> Result<(), Failure> {
     let mesh = args.scene.load(args.mesh.as_deref())?;
-    let surface = LimitSurface::new(&mesh).map_err(|e| Failure::of(&mesh, e))?;
+    let surface = refined(&mesh, &progress("counting".to_owned()))?;
     let control = Refiner::uniform(&mesh, 1).and_then(|r| r.level(0)).map_err(|e| Failure::of(&mesh, e))?;
     let mut info = collect(&mesh, &surface, &control);
     let deepest = args.levels.unwrap_or(if mesh.face_count() <= MANY_FACES { MAX_ISOLATION } else { 3 });
