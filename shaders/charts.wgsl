@@ -21,6 +21,27 @@ fn bernstein_derivative(t: f32) -> vec4f {
     return vec4f(-3.0 * s * s, 3.0 * s * (s - 2.0 * t), 3.0 * t * (2.0 * s - t), 3.0 * t * t);
 }
 
+// How far a point is beyond the diagonal where a triangle ends, if the chart is one that crosses it: half of what u + v is too
+// much for each, but none is left below zero. The diagonal is at the next power of two above u + v of the chart's first corner; of charts in triangles
+// that are turned, whose size is below zero, at the next one below.
+fn overshoot(c: Corner, t: vec2f) -> vec2f {
+    if c.start.z > 0.0 {
+        return vec2f(0.0);
+    }
+    let turned = c.place.z < 0.0;
+    let first = c.place.x + c.place.y;
+    let bits = bitcast<u32>(first);
+    // Below a power of two, and above anything else, the exponents differ by one.
+    let exponent = (bits >> 23u) - select(0u, 1u, turned && (bits & 0x7fffffu) == 0u);
+    let diagonal = bitcast<f32>((exponent + select(1u, 0u, turned)) << 23u);
+    let size = abs(c.place.zw);
+    let inside = select(diagonal - first, first - diagonal, turned);
+    let place = size * t;
+    let excess = max(place.x + place.y - inside, 0.0);
+    let from_v = min(excess - min(0.5 * excess, place.x), place.y);
+    return vec2f(excess - from_v, from_v) / size;
+}
+
 @fragment
 fn visible(c: Corner) -> Found {
     let d = c.clip.xy - bitcast<vec2f>(c.id.yz);
@@ -57,6 +78,10 @@ fn visible(c: Corner) -> Found {
             break;
         }
     }
+    // What lies beyond the diagonal of a triangle goes back to it.
+    let past = overshoot(c, t);
+    t -= past;
+    beyond = max(beyond, length(a * past.x + b * past.y));
     let uv = c.place.xy + c.place.zw * t;
     let bu = bernstein(t.x);
     let bv = bernstein(t.y);
@@ -66,7 +91,7 @@ fn visible(c: Corner) -> Found {
     let weight = 1.0 + z * lens.perspective;
     // What the sample sees of the point, and what rounding moves it by where (u,v) are handed on: a bound, for compilers undo
     // the rounding of sums that they see through.
-    let rounding = (length(a) * uv.x / c.place.z + length(b) * uv.y / c.place.w) * 5.9604645e-8;
+    let rounding = (length(a) * uv.x / abs(c.place.z) + length(b) * uv.y / abs(c.place.w)) * 5.9604645e-8;
     let residual = (length(vec2f(x, y) - d * weight) + rounding) / weight;
     let depth = lens.scale * (bitcast<f32>(c.id.w) - z) / weight;
     let converged = moved < SETTLED;

@@ -37,6 +37,7 @@ pub mod curves;
 pub mod field;
 pub mod gpu;
 mod line;
+pub mod memory;
 pub mod mesh;
 pub mod osd;
 pub mod output;

@@ -44,6 +44,21 @@ fn entry_points_are_valid() {
     }
 }
 
+/// The same for tables of triangles.
+#[test]
+fn entry_points_are_valid_for_triangles() {
+    for (module, method) in MODULES.iter().flat_map(|module| methods().into_iter().map(move |method| (module, method)))
+    {
+        let source = module.source_for_triangles(&method);
+        let parsed =
+            wgsl::parse_str(&source).unwrap_or_else(|e| panic!("{}: {}", module.name, e.emit_to_string(&source)));
+        let mut validator = valid::Validator::new(valid::ValidationFlags::all(), valid::Capabilities::empty());
+        if let Err(error) = validator.validate(&parsed) {
+            panic!("{}: {}", module.name, error.emit_to_string(&source));
+        }
+    }
+}
+
 /// Offsets of the fields of a WGSL struct, and its size.
 fn layout(name: &str) -> (Vec<(String, usize)>, usize) {
     for module in MODULES {

@@ -49,11 +49,14 @@ fn check_surface(mesh: &SubdivMesh) {
         Err(error) => panic!("a valid mesh without a surface: {error}\n{mesh:?}"),
     };
     check_evaluation(&surface, mesh);
-    let nets = if surface.has_triangles() { 0 } else { surface.patches().len().min(100) };
-    for patch in 0..nets {
+    for patch in 0..surface.patches().len().min(100) {
         let finite = match surface.net(patch, 24) {
             Net::Regular(points) => points.iter().all(|p| p.is_finite()),
             Net::Irregular { limit, lambda, levels } => {
+                limit.is_finite() && lambda < 1.0 && levels.iter().flatten().all(|p| p.is_finite())
+            }
+            Net::Triangle(points) => points.iter().all(|p| p.is_finite()),
+            Net::IrregularTriangle { limit, lambda, levels } => {
                 limit.is_finite() && lambda < 1.0 && levels.iter().flatten().all(|p| p.is_finite())
             }
         };

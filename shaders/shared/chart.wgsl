@@ -3,7 +3,7 @@
 // A chart, the same for all its fragments. id: patch + 1; x, y (samples) of its middle and how far its depth is before the farthest, in
 // perspective as part of itself, as bits. inverse: of the
 // linear map from (u,v) to samples, row by row. start: (u,v) that it gives the middle; half the sides of the rectangle round
-// (1/2,1/2) where it sees all that the chart covers. place: origin and size in the patch. x0 .. z3: rows of v of Bezier points,
+// (1/2,1/2) where it sees all that the chart covers, the first of them below zero if the chart ends at a diagonal. place: origin and size in the patch. x0 .. z3: rows of v of Bezier points,
 // x and y in samples from the middle, times weight, and depth. Weight and depth are parts of those of the middle, less one
 // (perspective); or the weight is one, and the depth is less that of the middle.
 struct Corner {
@@ -65,7 +65,7 @@ fn corner(@builtin(vertex_index) i: u32) -> Corner {
     c.y3 = bitcast<vec4f>(texel(first + 14u));
     c.z3 = bitcast<vec4f>(texel(first + 15u));
     let side = vec2f(f32(i & 1u), f32((i >> 1u) & 1u)) * 2.0 - 1.0;
-    let t = 0.5 + side * c.start.zw - c.start.xy;
+    let t = 0.5 + side * abs(c.start.zw) - c.start.xy;
     let m = c.inverse;
     let d = vec2f(m.w * t.x - m.y * t.y, m.x * t.y - m.z * t.x) / (m.x * m.w - m.y * m.z);
     let ndc = (bitcast<vec2f>(c.id.yz) + d) / lens.size * 2.0 - 1.0;

@@ -1,20 +1,5 @@
-// The limit surface at one point of a patch: the only place where WGSL evaluates it.
+// The limit surface at one point of a patch: the only place where WGSL evaluates it, but for triangles (triangle_point.wgsl).
 // f64 twin: stam::LimitSurface::evaluate. Yasui & Kanai 2004, eq. 4, 8 and 9, on normalised tables.
-
-struct LimitPoint {
-    position: vec3f,
-    du: vec3f,
-    dv: vec3f,
-    // Zero where the surface has none.
-    normal: vec3f,
-    // Mean and Gaussian; z: 1 where there are such. Computed for fields that read it.
-    curvature: vec3f,
-}
-
-fn unit_or_zero(v: vec3f) -> vec3f {
-    let size = length(v);
-    return select(vec3f(0.0), v / size, size > 0.0);
-}
 
 fn limit_point(record: vec4u, uv: vec2f) -> LimitPoint {
     var t = uv;

@@ -1,5 +1,6 @@
 //! Flags, typed.
 
+use super::memory::MemoryArgs;
 use super::scene::SceneArgs;
 use crate::osd::MAX_ISOLATION;
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -16,6 +17,8 @@ use std::path::PathBuf;
 pub(super) struct Cli {
     #[command(subcommand)]
     pub command: Command,
+    #[command(flatten)]
+    pub memory: MemoryArgs,
 }
 
 #[derive(Debug, Subcommand)]

@@ -2,7 +2,7 @@
 
 use super::args::{Backend, EvalArgs};
 use super::rows::{Rows, check_place, parameter, shortest};
-use super::{Failure, write_out};
+use super::{Failure, progress, refined, write_out};
 use crate::gpu::{self, Gpu};
 use crate::mesh::SubdivMesh;
 use crate::osd::{Answer, Far, Location, MAX_ISOLATION};
@@ -32,7 +32,7 @@ impl Sample {
 pub(super) fn run(args: &EvalArgs) -> Result<(), Failure> {
     args.output.as_deref().map_or(Ok(()), check_writable)?;
     let mesh = args.scene.load(args.mesh.as_deref())?;
-    let surface = LimitSurface::new(&mesh).map_err(|e| Failure::of(&mesh, e))?;
+    let surface = refined(&mesh, &progress("evaluating".to_owned()))?;
     let places = (surface.ptex_count(), surface.has_triangles());
     let samples = read(&Rows::open(&args.samples, "samples", "face,u,v")?, places)?;
     let jets = match args.backend {

@@ -2,7 +2,7 @@
 
 use super::args::GlintsArgs;
 use super::rows::shortest;
-use super::{Failure, write_out};
+use super::{Failure, progress, refined, write_out};
 use crate::field::{DEFAULT_FOV, Scout, sample_rig};
 use crate::output::check_writable;
 use crate::physical::{Nature, PathEnd, PathPoint, physical_reflections};
@@ -18,7 +18,7 @@ pub(super) fn run(args: &GlintsArgs) -> Result<(), Failure> {
         return Err(Failure::Bad("--eye-direction has no direction; give one that is not 0,0,0".to_owned()));
     }
     let mesh = args.scene.load_quads(args.mesh.as_deref(), "glints")?;
-    let surface = LimitSurface::new(&mesh).map_err(|e| Failure::of(&mesh, e))?;
+    let surface = refined(&mesh, &progress("searching".to_owned()))?;
     let eye = match (args.eye, args.eye_direction) {
         (_, Some(direction)) => PathEnd::Direction(direction),
         (Some(eye), None) => PathEnd::Point(eye),

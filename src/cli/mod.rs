@@ -18,6 +18,7 @@ mod frames;
 mod glints;
 mod info;
 mod lines;
+mod memory;
 mod numbered;
 mod patches;
 mod quality;
@@ -42,6 +43,7 @@ use crate::gpu::GpuError;
 use crate::line::printable;
 use crate::mesh::{MeshError, SubdivMesh};
 use crate::output::OutputError;
+use crate::stam::LimitSurface;
 
 /// Why a command stopped, and with which exit code.
 #[derive(Debug)]
@@ -116,7 +118,7 @@ pub fn run() -> ExitCode {
         }
     };
     discard_unfinished_when_stopped();
-    let result = match cli.command {
+    let result = cli.memory.apply().and_then(|()| match cli.command {
         Command::Render(args) => render::run(&args),
         Command::Lines(args) => lines::run(&args),
         Command::Eval(args) => eval::run(&args),
@@ -124,7 +126,7 @@ pub fn run() -> ExitCode {
         Command::Glints(args) => glints::run(&args),
         Command::Quality(args) => quality::run(&args),
         Command::Info(args) => info::run(&args),
-    };
+    });
     exit_code(result)
 }
 
@@ -159,6 +161,26 @@ fn progress(message: String) -> indicatif::ProgressBar {
     let bar = indicatif::ProgressBar::new_spinner().with_message(message);
     bar.enable_steady_tick(std::time::Duration::from_secs(1));
     bar
+}
+
+/// The surface of a mesh; the spinner becomes a bar meanwhile, where there is more than one piece to refine.
+fn refined(mesh: &SubdivMesh, spinner: &indicatif::ProgressBar) -> Result<LimitSurface, Failure> {
+    let message = spinner.message();
+    let watch = |done: usize, pieces: usize| {
+        if pieces > 1 {
+            spinner.set_length(pieces as u64);
+            spinner.set_position(done as u64);
+            if let Ok(style) =
+                indicatif::ProgressStyle::with_template("refining {bar:40} {pos} of {len} pieces, {eta} left")
+            {
+                spinner.set_style(style);
+            }
+        }
+    };
+    let surface = LimitSurface::watched(mesh, &watch).map_err(|error| Failure::of(mesh, error));
+    spinner.set_style(indicatif::ProgressStyle::default_spinner());
+    spinner.set_message(message);
+    surface
 }
 
 /// A bar on standard error that counts steps of what takes longer than a second, on a terminal only.

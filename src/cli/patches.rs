@@ -3,13 +3,17 @@
 use super::Failure;
 use super::account::Account;
 use crate::adaptive::AdaptivePatches;
-use crate::gpu::{Gpu, TableLayout, Tables};
+use crate::gpu::{Gpu, TableLayout, Tables, tables};
+use crate::memory;
 use crate::mesh::SubdivMesh;
 use crate::osd::{EndCap, Isolation, MAX_ISOLATION};
 use crate::stam::LimitSurface;
 use clap::{Args, ValueEnum};
 use std::fmt;
 use std::str::FromStr;
+
+/// Bytes that the passes of a picture take, and the driver.
+const PICTURES: u64 = 400 << 20;
 
 #[derive(Debug, Args)]
 pub(super) struct PatchesArgs {
@@ -127,7 +131,14 @@ impl PatchesArgs {
     ) -> Result<Tables, Failure> {
         match self.patches {
             Patches::Osd(isolation) if !self.compare => Ok(self.upload_osd(mesh, isolation, gpu, account)?.1),
-            _ => Ok(account.time("tables", || gpu.upload_as(surface, layout))?),
+            _ => {
+                if gpu.is_software() {
+                    // Its memory is the machine's.
+                    let needs = surface.bytes() + tables::bytes(surface, layout).min(tables::BUDGET) + PICTURES;
+                    memory::check(needs).map_err(|error| Failure::of(mesh, format!("to be drawn {error}")))?;
+                }
+                Ok(account.time("tables", || gpu.upload_as(surface, layout))?)
+            }
         }
     }
 }

@@ -7,9 +7,9 @@ use super::field::{ColourArgs, FieldArgs, PatternArgs};
 use super::frames::FramesArgs;
 use super::patches::PatchesArgs;
 use super::rig::RigArgs;
-use super::scene::{AnimationArgs, Source, check_quads, say_notes};
+use super::scene::{AnimationArgs, Source, say_notes};
 use super::settings::{MeshAt, made_by, mesh_digest};
-use super::{Failure, Steps, progress};
+use super::{Failure, Steps, progress, refined};
 use crate::field::{CurvatureKind, Method, Pattern, PlaneCurve, Scout};
 use crate::gpu::{Gpu, MAX_ENLARGE, MAX_PROXY_LEVEL, MAX_SAMPLES, Pipeline, Stage, TableLayout, Tables, View, tables};
 use crate::mesh::SubdivMesh;
@@ -19,6 +19,7 @@ use crate::output::{
 use crate::rig::{CameraRig, FittedRig, PatternRig, Rig};
 use crate::stam::{LimitSurface, MovingSurface};
 use clap::{Args, ValueEnum};
+use indicatif::ProgressBar;
 use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
@@ -175,7 +176,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let times = args.scene.times();
     let mut body = account.time("read", || source.at(times[0])).map_err(Failure::Bad).and_then(|mesh| {
         say_notes(args.mesh.as_deref(), &mesh);
-        account.time("patches and classes", || Body::new(mesh, times.len() > 1))
+        account.time("patches and classes", || Body::new(mesh, times.len() > 1, &bar))
     })?;
     let scout = account.time("fit", || Scout::new(body.surface())).ok_or_else(|| {
         Failure::Bad(format!(
@@ -292,13 +293,13 @@ enum Surface {
 }
 
 impl Body {
-    fn new(mesh: SubdivMesh, moves: bool) -> Result<Self, Failure> {
-        check_quads(&mesh, "render").map_err(Failure::Bad)?;
+    fn new(mesh: SubdivMesh, moves: bool, bar: &ProgressBar) -> Result<Self, Failure> {
         let surface = match moves {
-            true => MovingSurface::new(&mesh).map(|surface| Surface::Moving(Box::new(surface))),
-            false => LimitSurface::new(&mesh).map(Surface::Still),
+            true => MovingSurface::new(&mesh)
+                .map(|surface| Surface::Moving(Box::new(surface)))
+                .map_err(|error| Failure::of(&mesh, error))?,
+            false => Surface::Still(refined(&mesh, bar)?),
         };
-        let surface = surface.map_err(|error| Failure::of(&mesh, error))?;
         Ok(Self { digest: mesh_digest(&mesh), mesh, surface })
     }
 

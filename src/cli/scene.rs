@@ -146,7 +146,7 @@ fn times(text: &str) -> Result<Times, String> {
 
 /// Refuses triangles under Loop's rules for a command that does not know them; the error is one line.
 pub(super) fn check_quads(mesh: &SubdivMesh, command: &str) -> Result<(), String> {
-    let known = "eval, info and verify do, or use catmullClark";
+    let known = "render, eval, info and verify do, or use catmullClark";
     match mesh.scheme {
         Scheme::Loop => Err(format!("{}: the scheme loop is not supported by {command}; {known}", mesh.name)),
         _ => Ok(()),

@@ -40,7 +40,7 @@ impl Scout {
         for ptex in (0..surface.ptex_count() as u32).step_by(stride) {
             let at = |u: f64, v: f64| surface.evaluate_second_ptex(ptex, [u, v]).map(|(_, jet)| jet);
             for k in 0..GRID * GRID {
-                let [u, v] = [k % GRID, k / GRID].map(|i| (i as f64 + 0.5) / GRID as f64);
+                let [u, v] = surface.folded([k % GRID, k / GRID].map(|i| (i as f64 + 0.5) / GRID as f64));
                 if let Some(second) = at(u, v) {
                     let jet = second.first;
                     curvatures.push(second.curvature());
@@ -50,7 +50,8 @@ impl Scout {
                 }
             }
             let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
-            outline.extend(corners.iter().filter_map(|&(u, v)| at(u, v)).map(|jet| jet.first.position));
+            let corners = corners.iter().filter(|&&(u, v)| !surface.has_triangles() || u + v <= 1.0);
+            outline.extend(corners.filter_map(|&(u, v)| at(u, v)).map(|jet| jet.first.position));
         }
         outline.extend(&points);
         Some(Scout { outline, points, normals, curvatures, areas, bounds })

@@ -65,9 +65,6 @@ pub enum GpuError {
         /// The adapter's limit in bytes.
         limit: u64,
     },
-    /// Triangles under Loop's rules.
-    #[error("the scheme loop is not supported on the GPU so far; use catmullClark")]
-    Triangles,
     /// A view that cannot be drawn.
     #[error("{0}")]
     View(String),
@@ -104,7 +101,7 @@ pub struct Sample {
 pub struct Gpu {
     device: Device,
     /// For each content of tables.
-    passes: [Passes; 3],
+    passes: [Passes; 4],
     startup: Duration,
 }
 
@@ -155,8 +152,7 @@ impl Gpu {
     /// Builds the tables of a surface, in the layout that suits it, and puts them on the adapter.
     ///
     /// # Errors
-    /// [`GpuError::TooLarge`] where a table exceeds the adapter, [`GpuError::Device`] where its memory does not suffice,
-    /// [`GpuError::Triangles`] for a mesh of Loop's scheme.
+    /// [`GpuError::TooLarge`] where a table exceeds the adapter, [`GpuError::Device`] where its memory does not suffice.
     pub fn upload(&self, surface: &LimitSurface) -> Result<Tables, GpuError> {
         self.upload_as(surface, TableLayout::Auto)
     }
@@ -166,9 +162,6 @@ impl Gpu {
     /// # Errors
     /// As [`Gpu::upload`].
     pub fn upload_as(&self, surface: &LimitSurface, layout: TableLayout) -> Result<Tables, GpuError> {
-        if surface.has_triangles() {
-            return Err(GpuError::Triangles);
-        }
         tables::upload(&self.device, surface, layout)
     }
 

@@ -48,7 +48,7 @@ pub struct ChartRecord {
     pub id: [u32; 4],
     /// Inverse of the linear map, row by row.
     pub inverse: [f32; 4],
-    /// (u,v) of the middle, half the sides of the rectangle.
+    /// (u,v) of the middle, half the sides of the rectangle; the first side below zero if the chart ends at a diagonal.
     pub start: [f32; 4],
     /// Origin and size in the patch.
     pub place: [f32; 4],

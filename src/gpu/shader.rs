@@ -5,7 +5,7 @@ use super::charts::BAND;
 use super::records::ChartRecord;
 use super::tables::TABLE_LEVELS;
 use crate::field::{Method, colours};
-use crate::stam::LEVELS;
+use crate::stam::{LEVELS, box_spline};
 
 /// Kind of a patch of 16 points.
 pub const KIND_REGULAR: u32 = 0;
@@ -38,6 +38,8 @@ pub const TABLE_WIDTH: u32 = 4096;
 pub const BLOCK_ROWS: u32 = 8192;
 /// Texels of one level of an irregular patch: 9 rows of 4 points, x, y and z each.
 pub const LEVEL_TEXELS: u32 = 27;
+/// Texels of one level of an irregular triangle, and of a regular one: 16 points.
+pub const TRIANGLE_TEXELS: u32 = 12;
 /// Texels of a chart.
 pub const CHART_TEXELS: u32 = (size_of::<ChartRecord>() / 16) as u32;
 /// How a sample came to its point: not at all.
@@ -67,13 +69,20 @@ pub(super) enum Content {
     Tails,
     /// Regular patches, levels and Gregory patches.
     Gregory,
+    /// Triangles.
+    Triangles,
 }
 
 impl Content {
-    pub const ALL: [Self; 3] = [Self::Points, Self::Tails, Self::Gregory];
+    pub const ALL: [Self; 4] = [Self::Points, Self::Tails, Self::Gregory, Self::Triangles];
 
     pub fn variant(self, block_rows: u32) -> Variant {
-        Variant { block_rows, has_tail: self == Self::Tails, has_gregory: self == Self::Gregory }
+        Variant {
+            block_rows,
+            has_tail: self == Self::Tails,
+            has_gregory: self == Self::Gregory,
+            triangles: self == Self::Triangles,
+        }
     }
 }
 
@@ -84,6 +93,7 @@ pub(super) struct Variant {
     pub block_rows: u32,
     pub has_tail: bool,
     pub has_gregory: bool,
+    pub triangles: bool,
 }
 
 /// One shader module: its name, the files that it consists of, and its entry points.
@@ -99,8 +109,14 @@ impl Module {
     /// The whole source, constants first, for a field and for all that tables may hold.
     pub fn source(&self, method: &Method) -> String {
         // Levels that are given by picked points have no second derivatives.
-        let variant = Variant { block_rows: BLOCK_ROWS, has_tail: !method.reads_curvature(), has_gregory: true };
+        let has_tail = !method.reads_curvature();
+        let variant = Variant { block_rows: BLOCK_ROWS, has_tail, has_gregory: true, triangles: false };
         self.source_for(&variant, &method.wgsl())
+    }
+
+    /// The same for tables of triangles.
+    pub fn source_for_triangles(&self, method: &Method) -> String {
+        self.source_for(&Content::Triangles.variant(BLOCK_ROWS), &method.wgsl())
     }
 
     /// Whether it depends on the field.
@@ -115,7 +131,11 @@ impl Module {
             source.push_str("const READS_CURVATURE = false;\n");
         }
         for &file in self.files {
-            source.push_str(if file == FIELD { field } else { file });
+            source.push_str(match file {
+                FIELD => field,
+                LIMIT_POINT if variant.triangles => TRIANGLE_POINT,
+                file => file,
+            });
         }
         source
     }
@@ -123,6 +143,8 @@ impl Module {
 
 const RECORDS: &str = include_str!("../../shaders/shared/records.wgsl");
 const TABLES: &str = include_str!("../../shaders/shared/tables.wgsl");
+const LIMIT_VALUE: &str = include_str!("../../shaders/shared/limit_value.wgsl");
+const TRIANGLE_POINT: &str = include_str!("../../shaders/shared/triangle_point.wgsl");
 const LIMIT_POINT: &str = include_str!("../../shaders/shared/limit_point.wgsl");
 const BASIS: &str = include_str!("../../shaders/shared/basis.wgsl");
 const GREGORY: &str = include_str!("../../shaders/shared/gregory.wgsl");
@@ -140,8 +162,10 @@ const LIGHT: &str = include_str!("../../shaders/field/light.wgsl");
 const FIELD: &str = "field";
 
 /// Rasterises the proxy.
-pub const VISIBILITY: Module =
-    Module { name: "visibility", files: &[RECORDS, TABLES, BASIS, GREGORY, CURVATURE, LIMIT_POINT, VISIBILITY_PASS] };
+pub const VISIBILITY: Module = Module {
+    name: "visibility",
+    files: &[RECORDS, TABLES, BASIS, GREGORY, CURVATURE, LIMIT_VALUE, LIMIT_POINT, VISIBILITY_PASS],
+};
 /// What the proxy covers.
 pub const RECTANGLE: Module = Module {
     name: "rectangle",
@@ -151,6 +175,7 @@ pub const RECTANGLE: Module = Module {
         BASIS,
         GREGORY,
         CURVATURE,
+        LIMIT_VALUE,
         LIMIT_POINT,
         VISIBILITY_PASS,
         include_str!("../../shaders/rectangle.wgsl"),
@@ -165,6 +190,7 @@ pub const POINTS: Module = Module {
         BASIS,
         GREGORY,
         CURVATURE,
+        LIMIT_VALUE,
         LIMIT_POINT,
         VISIBILITY_PASS,
         FULLSCREEN,
@@ -180,6 +206,7 @@ pub const LIMIT: Module = Module {
         BASIS,
         GREGORY,
         CURVATURE,
+        LIMIT_VALUE,
         LIMIT_POINT,
         LIGHT,
         FIELD,
@@ -205,7 +232,16 @@ pub const RESOLVE: Module =
 /// Limit at samples.
 pub const EVALUATE: Module = Module {
     name: "evaluate",
-    files: &[RECORDS, TABLES, BASIS, GREGORY, CURVATURE, LIMIT_POINT, include_str!("../../shaders/evaluate.wgsl")],
+    files: &[
+        RECORDS,
+        TABLES,
+        BASIS,
+        GREGORY,
+        CURVATURE,
+        LIMIT_VALUE,
+        LIMIT_POINT,
+        include_str!("../../shaders/evaluate.wgsl"),
+    ],
 };
 
 /// Samples solved on the host.
@@ -233,7 +269,7 @@ fn constants(variant: &Variant) -> String {
         ("TABLE_WIDTH", TABLE_WIDTH),
         ("BLOCK_ROWS", variant.block_rows),
         ("TABLE_LEVELS", TABLE_LEVELS as u32),
-        ("LEVEL_TEXELS", LEVEL_TEXELS),
+        ("LEVEL_TEXELS", if variant.triangles { TRIANGLE_TEXELS } else { LEVEL_TEXELS }),
         ("CENTRE_LEVEL", LEVELS as u32),
         ("NO_PATCH", NO_PATCH),
         ("CHART_TEXELS", CHART_TEXELS),
@@ -252,6 +288,24 @@ fn constants(variant: &Variant) -> String {
         text.push_str(&format!("const {name} = array({});\n", ramp.map(vector).join(", ")));
     }
     text.push_str(&format!("const UNDEFINED_COLOUR = {};\n", vector(colours::UNDEFINED)));
+    if variant.triangles {
+        let columns: Vec<String> = box_spline_columns().iter().map(|c| format!("{c:?}")).collect();
+        let matrices = columns.chunks(16).map(|matrix| format!("mat4x4f({})", matrix.join(", ")));
+        let matrices: Vec<String> = matrices.collect();
+        text.push_str(&format!("const BOX_SPLINE = array({});\n", matrices.join(", ")));
+    }
     text.push_str(&format!("const HAS_TAIL = {};\nconst HAS_GREGORY = {};\n", variant.has_tail, variant.has_gregory));
     text
+}
+
+/// For each group of 4 control points of a triangle and each group of 4 Bezier points, the matrix that gives the weights of the
+/// former from those of the latter, column by column.
+fn box_spline_columns() -> Vec<f32> {
+    let mut columns = Vec::with_capacity(12 * 16);
+    for (controls, bezier) in (0..3).flat_map(|g| (0..4).map(move |q| (g, q))) {
+        for (column, row) in (0..4).flat_map(|column| (0..4).map(move |row| (column, row))) {
+            columns.push(box_spline::bezier_weight(4 * bezier + column, 4 * controls + row) as f32);
+        }
+    }
+    columns
 }

@@ -105,6 +105,9 @@ impl View {
         if self.field.method.reads_curvature() && tables.content() == Content::Tails {
             return fail("curvature is read from tables in the expanded layout only (--tables expanded)".into());
         }
+        if tables.has_triangles() && self.pipeline != Pipeline::Exact {
+            return fail("the scheme loop is drawn by the pipeline exact only (--pipeline exact)".into());
+        }
         if !tables.is_resident() && self.pipeline != Pipeline::Exact {
             let gib = tables.size() as f64 / f64::from(1 << 30);
             return fail(format!(

@@ -6,6 +6,8 @@ use std::path::Path;
 
 use thiserror::Error;
 
+use crate::memory::TooMuch;
+
 use super::validate::{MAX_COORDINATE, MAX_VALENCE};
 
 /// Longest piece of the input that a message quotes, in characters.
@@ -104,6 +106,8 @@ pub enum MeshError {
     NotFound { at: Place },
     #[error("{at}: cannot be read ({error}); give a file that you may read")]
     Unreadable { at: Place, error: io::Error },
+    #[error("{at}: to be read {needs}")]
+    Memory { at: Place, needs: TooMuch },
     #[error("{at}: only .obj, .usd, .usda, .usdc and .usdz are read; export the mesh as one of these")]
     UnsupportedFormat { at: Place },
     #[error("{at}: the file is empty; export the mesh again")]

@@ -32,6 +32,18 @@ impl SubdivMesh {
         })
     }
 
+    /// Bytes of the mesh's lists.
+    pub(crate) fn bytes(&self) -> u64 {
+        let lists = [
+            size_of_val(&self.points[..]),
+            size_of_val(&self.face_sizes[..]),
+            size_of_val(&self.face_vertices[..]),
+            size_of_val(&self.creases[..]),
+            size_of_val(&self.corners[..]),
+        ];
+        lists.iter().sum::<usize>() as u64
+    }
+
     /// Smallest and largest coordinates of the control points that faces use; `None` if there are no faces.
     ///
     /// # Panics

@@ -23,6 +23,8 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 
+use crate::memory;
+
 pub use error::{MeshError, Place, Spot};
 pub use parts::{Part, PtexParts, Repeat};
 pub use sample::sample;
@@ -80,8 +82,12 @@ impl MeshFile {
     /// Opens the file; the extension says the format.
     ///
     /// # Errors
-    /// A stage that cannot be read, or is not of its format. An OBJ is not looked at.
+    /// A stage that cannot be read, or is not of its format, or a file too large for [`memory::limit`]. An OBJ is not looked
+    /// at.
     pub fn open(path: &Path) -> Result<Self, MeshError> {
+        // The text and what it says take about as much; a stage is read into values first.
+        let size = path.metadata().map_or(0, |file| file.len());
+        memory::check(size.saturating_mul(2)).map_err(|needs| MeshError::Memory { at: Place::file(path), needs })?;
         let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
         match extension.as_deref() {
             Some("obj") => Ok(Self(Format::Obj(path.to_owned()))),

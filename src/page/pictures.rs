@@ -58,6 +58,12 @@ impl Pictures {
         if image.patch.iter().all(|&patch| patch == NO_PATCH) {
             return Ok(Self::default());
         }
+        let figure = |panel| Figure::new(panel, &mesh.name);
+        let errors = errors(mesh, &surface, &image)?.into_iter().map(figure).collect();
+        if surface.has_triangles() {
+            // OpenSubdiv's patches of triangles are not read.
+            return Ok(Self { errors, end_caps: Vec::new() });
+        }
         let patches = AdaptivePatches::new(mesh, Isolation::DEFAULT, EndCap::Gregory)?;
         let osd = gpu.upload_patches(&patches)?;
         let seen = gpu.inspect(&osd, &view)?;
@@ -67,10 +73,7 @@ impl Pictures {
         let frames = [gpu.render(&tables, &view)?, gpu.render(&osd, &view)?];
         let name = "OpenSubdiv's end caps, default level".to_owned();
         let end_caps = comparison_panels(frames, &seen, &comparison, name);
-        Ok(Self {
-            errors: errors(mesh, &surface, &image)?.into_iter().map(|panel| Figure::new(panel, &mesh.name)).collect(),
-            end_caps: end_caps.into_iter().map(|panel| Figure::new(panel, &mesh.name)).collect(),
-        })
+        Ok(Self { errors, end_caps: end_caps.into_iter().map(figure).collect() })
     }
 }
 

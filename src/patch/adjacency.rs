@@ -148,6 +148,10 @@ impl PtexEdges {
         out
     }
 
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.edges[..]) + size_of_val(&self.levels[..]) + size_of_val(&self.faces[..])
+    }
+
     /// Adds those of the next piece.
     pub fn append(&mut self, mut piece: Self, known: &mut HashMap<[u32; 2], u32>) {
         let mut lines: Vec<u32> = (self.lines..self.lines + piece.lines).collect();

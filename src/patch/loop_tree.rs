@@ -186,14 +186,14 @@ impl Walk {
     fn support(&mut self, level: usize, kind: PatchKind, rotation: usize) -> Support {
         let base = self.first_vertex[level];
         let global = |vertex: usize| (base + vertex) as u32;
-        let mut net = HashMap::with_capacity(NET.len());
+        let mut net = [PHANTOM; SLOTS * SLOTS];
         for corner in 0..3 {
             if corner == 0 && kind != PatchKind::Regular {
                 continue;
             }
             let fan = &self.fans[(rotation + corner) % 3];
             let at = [[0, 0], [1, 0], [0, 1]][corner];
-            net.insert((at[0], at[1]), global(fan.vertex));
+            net[slot(at)] = global(fan.vertex);
             // The own face lies between the neighbours 0 and 1, whose directions turn by 120 degrees from corner to corner.
             let [first, last] = match fan.closed {
                 true => [0, 5],
@@ -202,21 +202,20 @@ impl Walk {
             for k in first..=last {
                 let [i, j] = NEIGHBOURS[(k + 2 * corner as isize).rem_euclid(6) as usize];
                 if let Some(vertex) = fan.spoke(k) {
-                    net.insert((at[0] + i, at[1] + j), global(vertex));
+                    net[slot([at[0] + i, at[1] + j])] = global(vertex);
                 }
             }
         }
-        let at = |place: (isize, isize)| net.get(&place).copied().unwrap_or(PHANTOM);
         let first = self.out.vertices.len() as u32;
         if kind == PatchKind::Regular {
-            self.out.vertices.extend(NET.map(|[i, j]| at((i, j))));
+            self.out.vertices.extend(NET.map(|place| net[slot(place)]));
             return Support { first, kind: SupportKind::Net };
         }
         let fan = &self.fans[rotation];
         let class = RingClass { triangles: true, ..RingClass::new(fan) };
         self.out.vertices.push(global(fan.vertex));
         self.out.vertices.extend(fan.spokes.iter().map(|&v| global(v)));
-        self.out.vertices.extend(class.outer().into_iter().map(at));
+        self.out.vertices.extend(class.outer().into_iter().map(|(i, j)| net[slot([i, j])]));
         let next = self.class_indices.len() as u32;
         let index = *self.class_indices.entry(class).or_insert(next);
         if index == next {
@@ -236,6 +235,14 @@ impl Walk {
             }
         }
     }
+}
+
+/// Places of the lattice along each axis, from -1 to 2.
+const SLOTS: usize = 4;
+
+/// Index of a place of the lattice.
+fn slot([i, j]: [isize; 2]) -> usize {
+    SLOTS * (j + 1) as usize + (i + 1) as usize
 }
 
 /// The rules round the vertex are those of the box spline with phantom points.

@@ -10,6 +10,7 @@
 mod adjacency;
 mod fan;
 mod flat;
+mod forecast;
 pub mod lattice;
 mod loop_tree;
 mod piece;
@@ -19,7 +20,7 @@ mod tree;
 mod triangle;
 
 pub use adjacency::{Adjacency, Neighbour};
-pub use refine::Refinement;
+pub use refine::{Refinement, Watch};
 pub use tree::PHANTOM;
 pub(crate) use tree::slot;
 
@@ -43,6 +44,9 @@ pub enum PatchError {
     /// The classes of one vertex take memory with the square of its valence (300 MB at the limit).
     #[error("a face of {0} corners or a vertex of valence {0}; at most {MAX_VALENCE} are supported: split it")]
     Valence(usize),
+    /// The process may not take so much memory.
+    #[error("to be refined {0}")]
+    Memory(#[from] crate::memory::TooMuch),
     /// Refined vertices are counted in 32 bits.
     #[error("the refined mesh has more points than 32-bit indices can count; split it")]
     TooManyPoints,
@@ -343,6 +347,22 @@ impl Patches {
         let regular = if self.triangles { lattice::NET.len() } else { 16 };
         let length = self.class(patch).map_or(regular, |class| self.classes[class].support());
         &self.vertices[first..first + length]
+    }
+
+    /// Bytes of all this.
+    pub(crate) fn bytes(&self) -> u64 {
+        let Self { patches, supports, vertices, roots, splits, strips, row_weights, ptex_edges, .. } = self;
+        let lists = [
+            size_of_val(&patches[..]),
+            size_of_val(&supports[..]),
+            size_of_val(&vertices[..]),
+            size_of_val(&roots[..]),
+            size_of_val(&splits[..]),
+            size_of_val(&strips[..]),
+            size_of_val(&row_weights[..]),
+            ptex_edges.bytes(),
+        ];
+        lists.iter().sum::<usize>() as u64
     }
 
     /// The supports of all patches.

@@ -11,7 +11,7 @@ use std::borrow::Cow;
 use std::ops::Range;
 
 /// Control faces of a piece: enough that its rings are few beside them (8 % of a square of quads).
-const PIECE: usize = 32_768;
+pub(super) const PIECE: usize = 32_768;
 
 /// Most faces in all pieces together, as a multiple of those of the mesh: where faces that lie side by side are far apart in
 /// the mesh's order, pieces are mostly rings, and the mesh is better refined whole.

@@ -1,15 +1,18 @@
 //! From a control mesh to its patches, a piece at a time.
 
-use super::piece::{Division, Piece};
-use super::{Node, PatchError, Patches, RingClass, SupportKind, flat, loop_tree, tree};
+use super::piece::{Division, PIECE, Piece};
+use super::{Node, PatchError, Patches, RingClass, SupportKind, flat, forecast, loop_tree, tree};
+use crate::memory;
 use crate::mesh::{Scheme, SubdivMesh};
 use crate::osd::{self, INFINITE_SHARPNESS, MAX_ISOLATION, Refiner};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::collections::HashMap;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 /// After two levels every face is a quad with at most one extraordinary vertex and no other feature than its spokes.
-const RINGS_STAND_ALONE: u32 = 2;
+pub(super) const RINGS_STAND_ALONE: u32 = 2;
 
 /// Levels after which no finite sharpness is left: it decreases by one a level (Chaikin averages first, which lowers the
 /// largest).
@@ -17,6 +20,52 @@ fn isolation(mesh: &SubdivMesh) -> u32 {
     let sharpness = mesh.creases.iter().map(|c| c.sharpness).chain(mesh.corners.iter().map(|c| c.sharpness));
     let finite = sharpness.filter(|&s| s < INFINITE_SHARPNESS).fold(0.0, f32::max);
     (finite.ceil() as u32).clamp(RINGS_STAND_ALONE, MAX_ISOLATION)
+}
+
+/// Who is told how far refinement is: pieces that are done, and all pieces. It is called from several threads.
+pub type Watch<'a> = &'a (dyn Fn(usize, usize) + Sync);
+
+/// What the pieces take that are done, and what all will take.
+struct Ledger {
+    /// Bytes of the mesh, which stays.
+    mesh: u64,
+    faces: u64,
+    /// Pieces at work at the same time.
+    workers: u64,
+    /// Whether the refiners stay.
+    keeps_refiners: bool,
+    /// Faces and bytes of the pieces that are done.
+    done: Mutex<(u64, u64)>,
+}
+
+impl Ledger {
+    fn new(mesh: &SubdivMesh, pieces: usize, keeps_refiners: bool) -> Self {
+        Self {
+            mesh: mesh.bytes(),
+            faces: mesh.face_sizes.len() as u64,
+            workers: pieces.min(rayon::current_num_threads()) as u64,
+            keeps_refiners,
+            done: Mutex::default(),
+        }
+    }
+
+    /// Pieces that are made before they are put together: enough to keep all cores busy when some take longer.
+    fn at_once(&self) -> usize {
+        2 * self.workers as usize
+    }
+
+    /// Refuses where what is kept of all pieces, judged by those that are done, and as many pieces as this one, whose faces take
+    /// `working` bytes, exceed the limit. Then counts in a piece: its faces and bytes.
+    fn check(&self, working: u64, piece: Option<(usize, u64)>) -> Result<(), PatchError> {
+        let mut done = self.done.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((faces, bytes)) = piece {
+            done.0 += faces as u64;
+            done.1 += bytes + if self.keeps_refiners { working } else { 0 };
+        }
+        let twice = if done.0 == self.faces { 0.0 } else { (self.at_once() * PIECE) as f64 };
+        let kept = if done.0 == 0 { 0.0 } else { done.1 as f64 * (self.faces as f64 + twice) / done.0 as f64 };
+        Ok(memory::check(self.mesh + kept as u64 + working.saturating_mul(self.workers))?)
+    }
 }
 
 /// What makes refined points of control points, wherever these move: the refiners of a mesh.
@@ -51,21 +100,20 @@ impl Refinement {
     /// `points` is not one point for each control vertex.
     pub fn interpolate(&mut self, points: &[DVec3]) -> Result<Vec<DVec3>, osd::Error> {
         let pieces: Vec<_> = self.pieces.par_iter_mut().map(|piece| piece.interpolate(points)).collect();
-        joined(pieces)
+        let mut all = Vec::new();
+        for piece in pieces {
+            join(&mut all, piece?);
+        }
+        Ok(all)
     }
 }
 
-/// The points of all pieces.
-fn joined<E>(pieces: Vec<Result<Vec<DVec3>, E>>) -> Result<Vec<DVec3>, E> {
-    let mut out = Vec::new();
-    for points in pieces {
-        let mut points = points?;
-        match out.is_empty() {
-            true => out = points,
-            false => out.append(&mut points),
-        }
+/// Adds the points of the next piece.
+fn join(all: &mut Vec<DVec3>, mut piece: Vec<DVec3>) {
+    match all.is_empty() {
+        true => *all = piece,
+        false => all.append(&mut piece),
     }
-    Ok(out)
 }
 
 impl Patches {
@@ -74,7 +122,10 @@ impl Patches {
     /// # Errors
     /// The mesh is not valid, OpenSubdiv refuses it, or a face stays without a closed form.
     pub fn new(mesh: &SubdivMesh) -> Result<(Self, Refinement), PatchError> {
-        let (patches, pieces) = refine(mesh, divide(mesh)?, Ok)?;
+        let division = divide(mesh)?;
+        let ledger = Ledger::new(mesh, division.as_ref().map_or(1, Division::count), true);
+        let mut pieces = Vec::new();
+        let patches = refine(mesh, division, &ledger, &|_, _| (), Ok, |piece| pieces.push(piece))?;
         Ok((patches, Refinement { pieces }))
     }
 
@@ -83,9 +134,13 @@ impl Patches {
     ///
     /// # Errors
     /// As [`new`](Self::new).
-    pub(crate) fn with_points(mesh: &SubdivMesh) -> Result<(Self, Vec<DVec3>), PatchError> {
-        let (patches, pieces) = refine(mesh, divide(mesh)?, |piece| Ok(piece.interpolate(&mesh.points)?))?;
-        Ok((patches, joined::<PatchError>(pieces.into_iter().map(Ok).collect())?))
+    pub(crate) fn with_points(mesh: &SubdivMesh, watch: Watch<'_>) -> Result<(Self, Vec<DVec3>), PatchError> {
+        let division = divide(mesh)?;
+        let ledger = Ledger::new(mesh, division.as_ref().map_or(1, Division::count), false);
+        let mut points = Vec::new();
+        let interpolated = |piece: Refined| Ok(piece.interpolate(&mesh.points)?);
+        let patches = refine(mesh, division, &ledger, watch, interpolated, |piece| join(&mut points, piece))?;
+        Ok((patches, points))
     }
 
     /// Adds the patches of the next piece; `vertices` refined vertices come before its own.
@@ -146,14 +201,21 @@ fn divide(mesh: &SubdivMesh) -> Result<Option<Division<'_>>, PatchError> {
     Ok(Division::new(mesh))
 }
 
-/// Refines a mesh piece by piece, in parallel; `finish` says what is to be kept of each.
+/// Refines a mesh piece by piece, in parallel; `finish` says what is to be kept of each, and `keep` keeps it, in order.
 fn refine<R: Send>(
     mesh: &SubdivMesh,
     division: Option<Division<'_>>,
+    ledger: &Ledger,
+    watch: Watch<'_>,
     finish: impl Fn(Refined) -> Result<R, PatchError> + Sync,
-) -> Result<(Patches, Vec<R>), PatchError> {
+    mut keep: impl FnMut(R),
+) -> Result<Patches, PatchError> {
     let isolation = isolation(mesh);
+    let pieces = division.as_ref().map_or(1, Division::count);
+    let finished = AtomicUsize::new(0);
     let one = |piece: Piece<'_>| {
+        let working = forecast::working(&piece.mesh, isolation);
+        ledger.check(working, None)?;
         let refine = |single| Refiner::adaptive(&piece.mesh, isolation, RINGS_STAND_ALONE, single);
         let (refiner, patches) = match mesh.scheme {
             scheme if scheme.is_linear() => {
@@ -182,27 +244,34 @@ fn refine<R: Send>(
             }
         };
         let points = refiner.vertex_counts().iter().sum::<usize>();
+        let bytes = patches.bytes() + (points * size_of::<DVec3>()) as u64;
+        ledger.check(working, Some((piece.core.len(), bytes)))?;
+        watch(finished.fetch_add(1, Ordering::Relaxed) + 1, pieces);
         Ok((patches, points, finish(Refined { refiner, vertices: piece.vertices })?))
     };
     let Some(division) = division else {
-        let (patches, _, kept) = one(Piece::whole(mesh))?;
-        return Ok((patches, vec![kept]));
+        let (patches, _, own) = one(Piece::whole(mesh))?;
+        keep(own);
+        return Ok(patches);
     };
-    let pieces: Vec<Result<_, PatchError>> = (0..division.count())
-        .into_par_iter()
-        .map_init(Vec::new, |local, index| one(division.piece(index, local)))
-        .collect();
-    let (mut kept, mut vertices) = (Vec::new(), 0usize);
     let mut out = Patches { triangles: mesh.scheme == Scheme::Loop, ..Patches::default() };
-    let (mut classes, mut lines) = (HashMap::new(), HashMap::new());
-    for piece in pieces {
-        let (patches, points, own) = piece?;
-        let before = u32::try_from(vertices + points).map_err(|_| PatchError::TooManyPoints)? - points as u32;
-        out.append(patches, before, &mut classes, &mut lines);
-        vertices += points;
-        kept.push(own);
+    let (mut classes, mut lines, mut vertices) = (HashMap::new(), HashMap::new(), 0usize);
+    // A few at a time, so that what is put together is not there twice.
+    let at_once = ledger.at_once();
+    for batch in (0..pieces).step_by(at_once) {
+        let batch: Vec<Result<_, PatchError>> = (batch..pieces.min(batch + at_once))
+            .into_par_iter()
+            .map_init(Vec::new, |local, index| one(division.piece(index, local)))
+            .collect();
+        for piece in batch {
+            let (patches, points, own) = piece?;
+            let before = u32::try_from(vertices + points).map_err(|_| PatchError::TooManyPoints)? - points as u32;
+            out.append(patches, before, &mut classes, &mut lines);
+            vertices += points;
+            keep(own);
+        }
     }
-    Ok((out, kept))
+    Ok(out)
 }
 
 #[cfg(test)]
@@ -219,6 +288,13 @@ mod tests {
         format!("{:?} {class:?} {:?} {support:?}", patches.all()[patch], patches.row_weights(patch))
     }
 
+    fn refine_all(mesh: &SubdivMesh, division: Option<Division<'_>>) -> Result<(Patches, Vec<DVec3>), PatchError> {
+        let (ledger, mut points) = (Ledger::new(mesh, 1, false), Vec::new());
+        let interpolated = |piece: Refined| Ok(piece.interpolate(&mesh.points)?);
+        let patches = refine(mesh, division, &ledger, &|_, _| (), interpolated, |piece| join(&mut points, piece))?;
+        Ok((patches, points))
+    }
+
     /// In pieces of five faces every mesh has the patches, points to the last bit, trees and neighbours that it has whole.
     #[test]
     fn pieces_make_the_whole() {
@@ -227,15 +303,12 @@ mod tests {
         let meshes = files.filter_map(|file| crate::mesh::read(&file.expect("an entry").path()).ok());
         let (mut divided, mut compared) = (0, 0);
         for mesh in meshes.chain([crate::mesh::sample()]) {
-            let Ok((whole, whole_points)) = refine(&mesh, None, |piece| Ok(piece.interpolate(&mesh.points)?)) else {
+            let Ok((whole, whole_points)) = refine_all(&mesh, None) else {
                 continue;
             };
-            let whole_points = whole_points.concat();
             let parts = mesh.face_sizes.len().div_ceil(5).min(60);
             let division = Division::into_parts(&mesh, parts, f64::INFINITY);
-            let (pieces, points) =
-                refine(&mesh, division, |piece| Ok(piece.interpolate(&mesh.points)?)).expect("what the whole mesh has");
-            let points = points.concat();
+            let (pieces, points) = refine_all(&mesh, division).expect("what the whole mesh has");
             assert_eq!(pieces.all().len(), whole.all().len(), "{}", mesh.name);
             assert_eq!(pieces.classes(), whole.classes(), "{}", mesh.name);
             let neighbours = [&pieces, &whole].map(Adjacency::new);

@@ -5,6 +5,7 @@
 //! of the 12 points round it (Stam 1999, appendix A). It is written as a Bezier triangle here.
 
 use crate::patch::lattice;
+use glam::DVec3;
 
 /// Number of control points of a triangle.
 pub const POINTS: usize = 12;
@@ -16,7 +17,7 @@ pub const LATTICE: [[isize; 2]; POINTS] = lattice::NET;
 pub const NEIGHBOURS: [[isize; 2]; 6] = lattice::NEIGHBOURS;
 
 /// Number of points of a quartic Bezier triangle.
-const BEZIER_POINTS: usize = 15;
+pub const BEZIER_POINTS: usize = 15;
 
 /// Exponents (i,j) of u and v of each Bezier point; that of 1 - u - v is 4 - i - j.
 const EXPONENTS: [[usize; 2]; BEZIER_POINTS] = [
@@ -58,6 +59,35 @@ const BEZIER: [[u8; POINTS]; BEZIER_POINTS] = [
 ];
 
 const FACTORIALS: [f64; 5] = [1.0, 1.0, 2.0, 6.0, 24.0];
+
+/// Weight of a control point in a Bezier point; 0 beyond the last.
+pub fn bezier_weight(bezier: usize, control: usize) -> f64 {
+    BEZIER.get(bezier).map_or(0.0, |row| f64::from(row[control]) / 24.0)
+}
+
+/// The Bezier points of a triangle, whose hull holds it, in the order of increasing exponents of v, then u.
+pub fn bezier(net: &[DVec3; POINTS]) -> [DVec3; BEZIER_POINTS] {
+    BEZIER.map(|row| row.iter().zip(net).map(|(&weight, &p)| f64::from(weight) / 24.0 * p).sum())
+}
+
+/// The point of a Bezier triangle at (u,v), which may lie outside.
+pub fn bezier_point(points: &[DVec3; BEZIER_POINTS], [u, v]: [f64; 2]) -> DVec3 {
+    // De Casteljau's steps, in the order of EXPONENTS: rows of equal exponents of v, each one shorter than the one before.
+    let w = 1.0 - u - v;
+    let mut points = *points;
+    for degree in (0..4usize).rev() {
+        let (mut from, mut to) = (0, 0);
+        for row in 0..=degree {
+            let length = degree + 2 - row;
+            for k in 0..length - 1 {
+                points[to] = w * points[from + k] + u * points[from + k + 1] + v * points[from + length + k];
+                to += 1;
+            }
+            from += length;
+        }
+    }
+    points[0]
+}
 
 /// n! / (i! j! k!) u^i v^j w^k, 0 where an exponent is negative.
 fn bernstein(degree: isize, [i, j]: [isize; 2], [u, v, w]: [f64; 3]) -> f64 {
@@ -140,6 +170,22 @@ mod tests {
             assert_near(sum(&second, |x, y| x * y), [0.0, 1.0, 0.0]);
             assert_near(sum(&second, |_, y| y * y), [0.0, 0.0, 2.0]);
         }
+    }
+
+    /// The Bezier points give what the weights give, inside and outside.
+    #[test]
+    fn bezier_points_are_those_of_the_spline() {
+        let net: [DVec3; POINTS] = std::array::from_fn(|k| {
+            let k = k as f64;
+            DVec3::new(k.sin(), (2.3 * k).cos(), 0.4 * (0.7 * k).sin())
+        });
+        let points = bezier(&net);
+        for [u, v] in PLACES.into_iter().chain([[0.9, 0.8], [1.0, 1.0]]) {
+            let expected: DVec3 = first(u, v).iter().zip(net).map(|(w, p)| w[0] * p).sum();
+            assert!(bezier_point(&points, [u, v]).distance(expected) < 1e-13, "{u} {v}");
+        }
+        assert_eq!(bezier_weight(6, 4), 10.0 / 24.0);
+        assert_eq!(bezier_weight(15, 4), 0.0);
     }
 
     /// Derivatives are those of the values, by central differences: truncation h^2 / 6 of a third derivative, rounding 1e-16 / h.

@@ -16,7 +16,7 @@
 //! [`ClassTable::new`] builds the matrices of one class; patches of the class share them.
 
 use super::loop_modes;
-use super::loop_rows::LoopRows;
+use super::loop_rows::{LOOP_WINDOW, LoopRows};
 use super::modes::Modes;
 use super::rows::{Row, Rows};
 use super::surface::combine;
@@ -92,6 +92,11 @@ impl ClassTable {
         levels
     }
 
+    /// Whether the class is one of triangles.
+    pub fn is_of_triangles(&self) -> bool {
+        self.windows.len() == LOOP_WINDOW.len()
+    }
+
     /// Number of control points, K.
     pub fn support(&self) -> usize {
         self.limit.len()
@@ -112,6 +117,11 @@ impl ClassTable {
         let size = self.limit.len();
         let rows = &self.levels[level - 1];
         std::array::from_fn(|point| combine(&rows[point * size..(point + 1) * size], points))
+    }
+
+    /// Phat(n) of a class of triangles, at the places of [`LOOP_WINDOW`](super::LOOP_WINDOW).
+    pub fn loop_level_points(&self, level: usize, points: &[DVec3]) -> [DVec3; LOOP_WINDOW.len()] {
+        self.window_points(level, |k| k, points)
     }
 
     /// The points of one window of a level, which are those numbered `point(k)` among all of it.
@@ -146,6 +156,11 @@ impl ClassTable {
         let over = 1.0 / self.lambda;
         next.clear();
         next.extend(self.step.iter().map(|row| (sparse(row, points) - constant) * over));
+    }
+
+    /// A' times points of a class of triangles.
+    pub(super) fn loop_windows_of(&self, points: &[DVec3]) -> [DVec3; LOOP_WINDOW.len()] {
+        std::array::from_fn(|k| sparse(&self.windows[k], points))
     }
 
     /// A' times points: those of the three windows.

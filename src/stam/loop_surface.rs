@@ -23,7 +23,19 @@ pub struct LoopWindow {
     pub at_vertex: bool,
 }
 
+/// The windows of a level: at (1,0), at (0,1), and between them.
+pub const LOOP_WINDOWS: [LoopWindow; 3] = [
+    LoopWindow { level: 1, corner: [1, 0], sign: 1.0, t: [0.0; 2], at_vertex: false },
+    LoopWindow { level: 1, corner: [0, 1], sign: 1.0, t: [0.0; 2], at_vertex: false },
+    LoopWindow { level: 1, corner: [1, 1], sign: -1.0, t: [0.0; 2], at_vertex: false },
+];
+
 impl LoopWindow {
+    /// The window's corner (0,0), in units of 2^-n of the patch.
+    pub fn corner(&self) -> [f64; 2] {
+        self.corner.map(|x| x as f64)
+    }
+
     /// The window at patch-local (u,v), u >= 0, v >= 0, u + v <= 1. At (0,0), and below 2^-1000 where 2^n would overflow, it is
     /// the inner corner of level [`LEVELS`].
     pub fn at([u, v]: [f64; 2]) -> Self {

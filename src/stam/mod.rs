@@ -20,7 +20,7 @@ mod surface;
 pub use class::{ClassTable, LEVELS, WINDOW_POINTS};
 pub use curvature::Curvature;
 pub use loop_rows::LOOP_WINDOW;
-pub use loop_surface::LoopWindow;
+pub use loop_surface::{LOOP_WINDOWS, LoopWindow};
 pub use moving::{MoveError, MovingSurface};
 pub use rings::{Grid, Rings, WINDOWS};
 pub use surface::{LimitSurface, Net};

@@ -5,6 +5,7 @@
 //! all that is left of the patch.
 
 use super::class::{ClassTable, WINDOW_POINTS};
+use super::loop_rows::LOOP_WINDOW;
 use super::surface::LimitSurface;
 use glam::DVec3;
 
@@ -54,13 +55,23 @@ impl Rings<'_> {
         self.points.iter().map(|&p| self.scale * p)
     }
 
-    /// The points of the level's [`WINDOWS`], relative to [`limit`](Self::limit).
+    /// The points of the level's [`WINDOWS`] of a quad, relative to [`limit`](Self::limit).
     pub fn grid(&self) -> Grid {
         let mut grid = self.table.windows_of(&self.points);
         for point in &mut grid {
             *point *= self.scale;
         }
         Grid(grid)
+    }
+
+    /// Whether the patch is a triangle.
+    pub fn is_triangle(&self) -> bool {
+        self.table.is_of_triangles()
+    }
+
+    /// The points of the level of a triangle, at the places of [`LOOP_WINDOW`], relative to [`limit`](Self::limit).
+    pub fn loop_grid(&self) -> [DVec3; LOOP_WINDOW.len()] {
+        self.table.loop_windows_of(&self.points).map(|point| self.scale * point)
     }
 
     /// The rings of the points that a linear map makes of these, from the level where they are.

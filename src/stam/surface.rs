@@ -1,15 +1,16 @@
 //! The limit surface of a mesh: patches, points, tables, evaluation.
 
+use super::box_spline;
 use super::class::{ClassTable, WINDOW_POINTS};
+use super::loop_rows::LOOP_WINDOW;
 use crate::mesh::SubdivMesh;
-use crate::patch::{Adjacency, PHANTOM, Patch, PatchError, PatchKind, Patches, Refinement, RingClass, slot};
+use crate::patch::{Adjacency, PHANTOM, Patch, PatchError, PatchKind, Patches, Refinement, RingClass, Watch, slot};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::sync::Arc;
 
 /// The control net of a patch, as an evaluator wants it.
 #[derive(Debug, Clone)]
-#[expect(clippy::large_enum_variant, reason = "a net is a value on its way into a table; a box each would cost more")]
 pub enum Net {
     /// 16 uniform bicubic B-spline points, u fastest: point (i,j), i and j in -1..=2, at `4*(j+1) + (i+1)`; the corners
     /// of the patch are at 5, 6, 10, 9.
@@ -23,6 +24,17 @@ pub enum Net {
         /// Phat of level n at `levels[n-1]`: 24 points, the grid (a,b), a and b in -1..=3, u fastest, without (-1,-1):
         /// point (a,b) at `5*(b+1) + (a+1) - 1`.
         levels: Vec<[DVec3; WINDOW_POINTS]>,
+    },
+    /// The 12 points of a quartic box spline, as [`box_spline`](super::box_spline) names them.
+    Triangle([DVec3; box_spline::POINTS]),
+    /// Normalised Stam table of a triangle, docs/LIMIT.md, section 8.
+    IrregularTriangle {
+        /// s0, the limit position of the extraordinary vertex at local (0,0).
+        limit: DVec3,
+        /// lambda, the largest eigenvalue of the subdivision matrix below 1.
+        lambda: f64,
+        /// Phat of level n at `levels[n-1]`, at the places of [`LOOP_WINDOW`].
+        levels: Vec<[DVec3; LOOP_WINDOW.len()]>,
     },
 }
 
@@ -42,7 +54,15 @@ impl LimitSurface {
     /// # Errors
     /// The mesh is not valid, OpenSubdiv refuses it, or a face stays without a closed form.
     pub fn new(mesh: &SubdivMesh) -> Result<Self, PatchError> {
-        let (patches, points) = Patches::with_points(mesh)?;
+        Self::watched(mesh, &|_, _| ())
+    }
+
+    /// As [`new`](Self::new); `watch` is told how far it is.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn watched(mesh: &SubdivMesh, watch: Watch<'_>) -> Result<Self, PatchError> {
+        let (patches, points) = Patches::with_points(mesh, watch)?;
         Ok(Self::of(patches, points, mesh))
     }
 
@@ -81,6 +101,11 @@ impl LimitSurface {
     /// Index into [`classes`](Self::classes) of an irregular patch.
     pub fn class(&self, patch: usize) -> Option<usize> {
         self.patches.class(patch)
+    }
+
+    /// Bytes of patches and points; tables of classes are small beside them.
+    pub fn bytes(&self) -> u64 {
+        self.patches.bytes() + size_of_val(&self.points[..]) as u64
     }
 
     /// Number of ptex faces, holes included.
@@ -137,6 +162,11 @@ impl LimitSurface {
     /// Whether patches are triangles, under Loop's scheme.
     pub fn has_triangles(&self) -> bool {
         self.patches.are_triangles()
+    }
+
+    /// A point of the unit square, folded into the triangle where patches are triangles.
+    pub(crate) fn folded(&self, [u, v]: [f64; 2]) -> [f64; 2] {
+        if self.has_triangles() && u + v > 1.0 { [1.0 - u, 1.0 - v] } else { [u, v] }
     }
 
     /// A refined point.
@@ -209,11 +239,20 @@ impl LimitSurface {
 
     /// Control net of a patch; `levels` (1 to [`LEVELS`](super::LEVELS)) levels of it where it is irregular.
     pub fn net(&self, patch: usize, levels: usize) -> Net {
+        let triangles = self.has_triangles();
         let Some(class) = self.class(patch) else {
-            return Net::Regular(self.regular_net(patch));
+            return if triangles {
+                Net::Triangle(self.triangle_net(patch))
+            } else {
+                Net::Regular(self.regular_net(patch))
+            };
         };
         let table = &self.tables[class];
         let (points, limit) = self.irregular_net(patch, table);
+        if triangles {
+            let levels = (1..=levels).map(|level| table.loop_level_points(level, &points)).collect();
+            return Net::IrregularTriangle { limit, lambda: table.lambda, levels };
+        }
         let levels = (1..=levels).map(|level| table.level_points(level, &points)).collect();
         Net::Irregular { limit, lambda: table.lambda, levels }
     }

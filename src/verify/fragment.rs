@@ -87,7 +87,10 @@ fn all_patches(subject: &Subject<'_>, gpu: &Gpu, tables: &Tables, bins: &mut Bin
         .step_by((count * each).div_ceil(BUDGET).max(1))
         // With fewer a patch, other ones on every patch.
         .flat_map(|patch| (0..each).map(move |i| (patch, (patch + i) % PER_PATCH)))
-        .map(|(patch, i)| gpu::Sample { patch: patch as u32, uv: place(patch, i) })
+        .map(|(patch, i)| {
+            let uv = surface.folded(place(patch, i).map(f64::from)).map(|x| x as f32);
+            gpu::Sample { patch: patch as u32, uv }
+        })
         .collect();
     let exact: Vec<Jet> = samples.par_iter().map(|s| subject.evaluate_patch(s.patch as usize, s.uv)).collect();
     let mut largest: Option<(f64, Jet)> = None;

@@ -115,11 +115,6 @@ impl<'a> Subject<'a> {
         if self.swapped { [v, u] } else { [u, v] }
     }
 
-    /// A point of the unit square, folded into the triangle where faces are triangles.
-    fn folded(&self, [u, v]: [f64; 2]) -> [f64; 2] {
-        if self.surface.has_triangles() && u + v > 1.0 { [1.0 - u, 1.0 - v] } else { [u, v] }
-    }
-
     /// Ptex faces to sample: all of them, or evenly spread ones so that `per_face` samples each stay below `budget`.
     fn faces(&self, per_face: usize, budget: usize) -> impl Iterator<Item = u32> + use<> {
         let count = self.surface.ptex_count();
@@ -221,10 +216,7 @@ fn tiers(subject: &Subject<'_>, gpu: &Gpu, size: [u32; 2], clock: &mut Clock) ->
     let references = clock.time("references", || References::new(subject))?;
     clock.time("dyadic", || dyadic::run(subject, &references, &mut bins))?;
     clock.time("regular", || regular::run(subject, &references, &mut bins))?;
-    // Triangles are not drawn so far.
-    if !subject.surface.has_triangles() {
-        fragment::run(subject, &references.far, gpu, size, clock, &mut bins)?;
-    }
+    fragment::run(subject, &references.far, gpu, size, clock, &mut bins)?;
     clock.time("endcap", || endcap::run(subject, &mut bins))?;
     Ok(bins)
 }

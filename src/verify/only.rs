@@ -187,7 +187,6 @@ fn evaluations(
         let jet = Jet { position: mask.position, du: none, dv: none, normal };
         all.push(compare.evaluation("limit mask", mask.known_wrong.unwrap_or("exact"), Some(jet)));
     }
-    let gpu = gpu.filter(|_| !subject.surface.has_triangles());
     if let Some((gpu, (patch, local))) = gpu.zip(place) {
         let tables = gpu.upload(subject.surface)?;
         let sample = gpu::Sample { patch: patch as u32, uv: local.map(|x| x as f32) };

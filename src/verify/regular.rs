@@ -26,7 +26,7 @@ pub(super) fn scattered(subject: &Subject<'_>, per_face: usize, budget: usize) -
     let on_face = |face: u32| {
         let first = face.wrapping_mul(per_face as u32) % (1 << 20);
         (first..first + per_face as u32).map(move |i| {
-            let [u, v] = subject.folded(scatter(i));
+            let [u, v] = subject.surface.folded(scatter(i));
             (face, u, v)
         })
     };
@@ -39,7 +39,7 @@ fn inside(subject: &Subject<'_>, patches: &[usize], each: u32) -> Vec<Location> 
         let patch = &subject.surface.patches()[index];
         let first = (index as u32).wrapping_mul(each) % (1 << 20);
         (first..first + each).map(move |i| {
-            let [u, v] = patch.to_ptex(subject.folded(scatter(i)));
+            let [u, v] = patch.to_ptex(subject.surface.folded(scatter(i)));
             (patch.ptex, u, v)
         })
     };

@@ -203,5 +203,6 @@ fn pieces(surface: &LimitSurface, patch: usize) -> Vec<Piece> {
             pieces.push(Piece { net: [limit; 16], patch: id, corner: [0.0; 2], size: 0.0, tolerance });
             pieces
         }
+        Net::Triangle(_) | Net::IrregularTriangle { .. } => panic!("the caster knows quads alone"),
     }
 }

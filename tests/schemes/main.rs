@@ -3,7 +3,10 @@
 #[path = "../common/mod.rs"]
 mod common;
 mod flat;
+mod pixels;
 mod properties;
+#[path = "../common/random_mesh.rs"]
+mod random_mesh;
 mod reference;
 mod refusals;
 
@@ -30,13 +33,22 @@ fn named(name: &str) -> SubdivMesh {
     meshes().into_iter().find(|mesh| mesh.name == name).expect("a test mesh")
 }
 
-/// OpenSubdiv's own shapes for Loop's scheme, whose files say so in their name; none where they are not beside the project.
-fn loop_corpus() -> Vec<SubdivMesh> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/meshes/opensubdiv");
-    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-    let mut paths: Vec<_> = entries.map(|entry| entry.path()).collect();
-    paths.retain(|path| path.file_name().is_some_and(|name| name.to_string_lossy().starts_with("loop_")));
-    paths.sort();
-    let read = |path: &std::path::PathBuf| mesh::read(path).ok();
-    paths.iter().filter_map(read).map(|mesh| SubdivMesh { scheme: Scheme::Loop, ..mesh }).collect()
+/// A mesh of any polygons as one of Loop's scheme: every face is a fan from its first vertex, with its features.
+fn triangulated(mesh: &SubdivMesh) -> SubdivMesh {
+    let mut faces = Vec::new();
+    let mut holes = Vec::new();
+    for (index, face) in mesh.faces() {
+        let first = faces.len() as u32;
+        faces.extend((2..face.len()).map(|k| [face[0], face[k - 1], face[k]]));
+        if mesh.holes.contains(&(index as u32)) {
+            holes.extend(first..faces.len() as u32);
+        }
+    }
+    SubdivMesh {
+        face_sizes: vec![3; faces.len()],
+        face_vertices: faces.into_flattened(),
+        holes,
+        scheme: Scheme::Loop,
+        ..mesh.clone()
+    }
 }

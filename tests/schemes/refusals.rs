@@ -72,7 +72,7 @@ fn unknown_schemes_and_faces_are_refused_with_their_line() {
 /// Commands that do not know triangles say so, and leave no file.
 #[test]
 fn commands_without_loop_say_so() {
-    for command in ["lines", "quality", "glints", "render"] {
+    for command in ["lines", "quality", "glints"] {
         let output = run(command, "loop", "f 1 2 3\nf 1 3 4");
         assert_refused(&output, &format!("square: the scheme loop is not supported by {command}"));
     }

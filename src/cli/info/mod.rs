@@ -5,7 +5,7 @@ mod adaptive;
 use adaptive::AdaptiveLevel;
 
 use super::args::InfoArgs;
-use super::{Failure, write_out};
+use super::{Failure, progress, refined, write_out};
 use crate::gpu;
 use crate::mesh::{Boundary, Creasing, Part, SubdivMesh};
 use crate::osd::{INFINITE_SHARPNESS, Level, MAX_ISOLATION, Refiner, Rule};
@@ -81,11 +81,11 @@ struct Prim {
 
 pub(super) fn run(args: &InfoArgs) -> Result<(), Failure> {
     let mesh = args.scene.load(args.mesh.as_deref())?;
-    let surface = LimitSurface::new(&mesh).map_err(|e| Failure::of(&mesh, e))?;
+    let surface = refined(&mesh, &progress("counting".to_owned()))?;
     let control = Refiner::uniform(&mesh, 1).and_then(|r| r.level(0)).map_err(|e| Failure::of(&mesh, e))?;
     let mut info = collect(&mesh, &surface, &control);
     let deepest = args.levels.unwrap_or(if mesh.face_count() <= MANY_FACES { MAX_ISOLATION } else { 3 });
-    // OpenSubdiv's patches of triangles are not read, and there are no tables of them.
+    // OpenSubdiv's patches of triangles are not read.
     let deepest = if surface.has_triangles() { 0 } else { deepest };
     let levels = (1..=deepest).map(|level| AdaptiveLevel::new(&mesh, &surface, level));
     info.opensubdiv = levels.collect::<Result<_, _>>().map_err(|e| Failure::of(&mesh, e))?;
@@ -98,7 +98,6 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), Failure> {
 }
 
 fn collect(mesh: &SubdivMesh, surface: &LimitSurface, control: &Level) -> Info {
-    let triangles = surface.has_triangles();
     let mut info = Info {
         mesh: mesh.name.clone(),
         meters_per_unit: mesh.meters_per_unit,
@@ -111,10 +110,9 @@ fn collect(mesh: &SubdivMesh, surface: &LimitSurface, control: &Level) -> Info {
         holes: control.face_holes.iter().filter(|&&hole| hole != 0).count(),
         classes: surface.classes().len(),
         class_table_bytes: surface.tables().iter().map(|table| table.bytes()).sum(),
-        gpu_table_bytes: if triangles { 0 } else { gpu::tables::bytes(surface, gpu::TableLayout::Auto) },
+        gpu_table_bytes: gpu::tables::bytes(surface, gpu::TableLayout::Auto),
         gpu_table_bytes_by_layout: gpu::TableLayout::ALL
             .iter()
-            .filter(|_| !triangles)
             .map(|&layout| (layout.to_string(), gpu::tables::bytes(surface, layout)))
             .collect(),
         scheme: mesh.scheme.name(),

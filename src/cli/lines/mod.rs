@@ -9,12 +9,11 @@ use super::field::FieldArgs;
 use super::rig::{RigArgs, is_orthographic, positive};
 use super::scene::SceneArgs;
 use super::settings::{CommandLine, mesh_digest, method_name};
-use super::{Failure, progress, write_out};
+use super::{Failure, progress, refined, write_out};
 use crate::curves::{self, Curve};
 use crate::field::{Camera, Projection, Scout};
 use crate::output::{Lines, LinesFormat, MM_PER_PIXEL, check_writable, write_whole};
 use crate::rig::{CameraRig, Rig};
-use crate::stam::LimitSurface;
 use clap::{Args, ValueEnum};
 use family::FamilyArgs;
 use std::path::{Path, PathBuf};
@@ -155,8 +154,7 @@ pub(super) fn run(args: &LinesArgs) -> Result<(), Failure> {
     args.rig.check_apart(&mut files)?;
     let bar = progress("tracing".to_owned());
     let mesh = account.time("read", || args.scene.load_quads(args.mesh.as_deref(), "lines"))?;
-    let surface =
-        account.time("patches and classes", || LimitSurface::new(&mesh)).map_err(|e| Failure::of(&mesh, e))?;
+    let surface = account.time("patches and classes", || refined(&mesh, &bar))?;
     let scout = account.time("fit", || Scout::new(&surface)).ok_or_else(|| {
         let what = "no face has a limit surface (holes, or boundary rule none); no line to trace";
         Failure::Bad(format!("{}: {what}", mesh.name))

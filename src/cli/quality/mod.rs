@@ -10,14 +10,13 @@ use super::field::{ColourArgs, FieldArgs, PatternArgs};
 use super::rig::RigArgs;
 use super::scene::SceneArgs;
 use super::settings::{CommandLine, mesh_digest};
-use super::{Failure, progress, write_out};
+use super::{Failure, progress, refined, write_out};
 use crate::field::{Field, Pattern, Scout};
 use crate::gpu::View;
 use crate::mesh::{PtexParts, SubdivMesh};
 use crate::output::check_writable;
 use crate::quality::{FeatureKind, Kind, Limits, Quality, Ranked, Reading};
 use crate::rig::{CameraRig, FittedRig, PatternName, PatternRig, Rig};
-use crate::stam::LimitSurface;
 use clap::{Args, ValueEnum};
 use picture::Picture;
 use std::path::PathBuf;
@@ -170,8 +169,7 @@ pub(super) fn run(args: &QualityArgs) -> Result<(), Failure> {
     let pattern = rig.pattern.read(&rig.method()).map_err(Failure::Bad)?;
     let bar = progress("measuring".to_owned());
     let mesh = account.time("read", || args.scene.load_quads(args.mesh.as_deref(), "quality"))?;
-    let surface =
-        account.time("patches and classes", || LimitSurface::new(&mesh)).map_err(|e| Failure::of(&mesh, e))?;
+    let surface = account.time("patches and classes", || refined(&mesh, &bar))?;
     let scout = account.time("fit", || Scout::new(&surface)).ok_or_else(|| {
         let what = "no face has a limit surface (holes, or boundary rule none); nothing to measure";
         Failure::Bad(format!("{}: {what}", mesh.name))

@@ -7,6 +7,7 @@ use super::frame::{ChartFrame, Flat};
 use super::lens::Lens;
 use super::piece::Piece;
 use super::solve::{Hit, POINT, first_hit, newton};
+use super::triangle::Quartic;
 use crate::adaptive::Gregory;
 use crate::gpu::records::{ChartRecord, SpeckRecord};
 use crate::gpu::tables::PatchNets;
@@ -18,6 +19,8 @@ use std::ops::Range;
 const FEW: usize = 2;
 /// Longest side of a chart's bounds in samples: larger ones overlap more tiles that they do not cover, and take more steps.
 const LARGEST: f64 = 48.0;
+/// Extent below which a piece is no longer cut for its shape.
+pub(super) const SMALLEST: f64 = 1.0 / (1u64 << DEEPEST) as f64;
 /// Levels below which nothing straddles the near plane any more: what is left lies on it.
 const DEEPEST: u32 = 32;
 
@@ -31,7 +34,7 @@ pub(super) struct Harvest {
 /// Cuts patches.
 #[derive(Debug)]
 pub(super) struct Divider<'a> {
-    lens: &'a Lens,
+    pub(super) lens: &'a Lens,
     /// Parts that every face is cut into at least, as a level.
     level: u8,
     patch: u32,
@@ -52,7 +55,11 @@ impl<'a> Divider<'a> {
                 let owed = levels.map(|own| self.level.saturating_sub(own));
                 self.cut(&mut Piece::new(|k| self.lens.project(net[k]), [0.0; 2], 1.0, owed));
             }
-            PatchNets::Irregular(rings) => self.irregular(levels, rings),
+            PatchNets::Irregular(rings) | PatchNets::IrregularTriangle(rings) => self.irregular(levels, rings),
+            PatchNets::Triangle(net) => {
+                let owed = levels.map(|own| self.level.saturating_sub(own));
+                self.triangle(&Quartic::whole(&net.map(|p| self.lens.project(p))), owed);
+            }
             PatchNets::Gregory(patch) => {
                 let lens = self.lens;
                 let patch = patch.mapped(|p| lens.project(p), |v| lens.turn(v));
@@ -67,7 +74,7 @@ impl<'a> Divider<'a> {
     }
 
     /// Whether the tile may see anything of what is in a hull.
-    fn sees(&self, hull: impl Iterator<Item = DVec3> + Clone) -> bool {
+    pub(super) fn sees(&self, hull: impl Iterator<Item = DVec3> + Clone) -> bool {
         match seen(self.lens, hull) {
             Seen::No => false,
             Seen::Straddles => true,
@@ -86,13 +93,10 @@ impl<'a> Divider<'a> {
             Piece::through(|[u, v]| patch.position([origin[0] + u * size, origin[1] + v * size]), origin, size, owed);
         let gap = piece.gap(|uv| patch.position(uv));
         let is_bicubic = piece.error(self.lens, &gap) <= TOLERANCE || gap.largest().cmple(rounding).all();
-        if is_bicubic || size < 0.5f64.powi(DEEPEST as i32) {
+        if is_bicubic || size < SMALLEST {
             return self.cut(&mut { piece });
         }
-        // Twice, for the gap is measured at some points only.
-        let reach = 2.0 * gap.largest();
-        let around = |p: DVec3| box_corners([p - reach, p + reach]);
-        if !self.sees(piece.points().flat_map(around)) {
+        if !self.sees_near(&piece, gap.largest()) {
             return;
         }
         let half = 0.5 * size;
@@ -100,6 +104,14 @@ impl<'a> Divider<'a> {
             let origin = [origin[0] + i * half, origin[1] + j * half];
             self.gregory(patch, rounding, origin, half, owed.map(|levels| levels.saturating_sub(1)));
         }
+    }
+
+    /// Whether the tile may see anything of what a piece approximates.
+    pub(super) fn sees_near(&self, piece: &Piece, gap: DVec3) -> bool {
+        // Twice, for the gap is measured at some points only.
+        let reach = 2.0 * gap;
+        let around = |p: DVec3| box_corners([p - reach, p + reach]);
+        self.sees(piece.points().flat_map(around))
     }
 
     fn irregular(&mut self, levels: [u8; 2], rings: Rings<'_>) {
@@ -130,22 +142,32 @@ impl<'a> Divider<'a> {
             let level = rings.level();
             let size = 0.5f64.powi(level as i32);
             let owed = levels.map(|own| self.level.saturating_sub(own).saturating_sub(level.min(255) as u8));
-            let grid = rings.grid();
-            for window in WINDOWS {
-                let origin = window.map(|i| i as f64 * size);
-                self.cut(&mut Piece::new(|k| limit + grid.point(window, k), origin, size, owed));
+            if rings.is_triangle() {
+                let points = rings.loop_grid();
+                let windows = Quartic::windows(level, |k| limit + points[k]);
+                windows.iter().for_each(|window| self.triangle(window, owed));
+            } else {
+                let grid = rings.grid();
+                for window in WINDOWS {
+                    let origin = window.map(|i| i as f64 * size);
+                    self.cut(&mut Piece::new(|k| limit + grid.point(window, k), origin, size, owed));
+                }
             }
             rings.descend();
         }
     }
 
     /// Cuts until everything is a chart, solved, or out of sight.
-    fn cut(&mut self, piece: &mut Piece) {
+    pub(super) fn cut(&mut self, piece: &mut Piece) {
+        if piece.is_beyond() {
+            return;
+        }
+        let [u, v] = piece.size.map(f64::abs);
         match piece.seen(self.lens) {
             Seen::No => (),
-            Seen::Straddles if piece.size[0].min(piece.size[1]) < 0.5f64.powi(DEEPEST as i32) => (),
+            Seen::Straddles if u.min(v) < SMALLEST => (),
             Seen::Straddles if piece.has_no_area() => (),
-            Seen::Straddles => self.halves(piece, piece.size[1] > piece.size[0]),
+            Seen::Straddles => self.halves(piece, v > u),
             Seen::Within(bounds) => self.within(piece, &bounds),
         }
     }
@@ -196,7 +218,13 @@ impl<'a> Divider<'a> {
         self.out.charts.push(ChartRecord {
             id: [self.patch + 1, x, y, depth],
             inverse: row([a, b, c, d]),
-            start: row([frame.start[0], frame.start[1], half[0], half[1]]),
+            // The sign says that the piece ends at a diagonal, which follows from its place: shaders/charts.wgsl.
+            start: row([
+                frame.start[0],
+                frame.start[1],
+                if piece.clip.is_some() { -half[0] } else { half[0] },
+                half[1],
+            ]),
             place: row([piece.origin[0], piece.origin[1], piece.size[0], piece.size[1]]),
             net: piece.relative_to(self.lens, frame),
         });

@@ -20,6 +20,8 @@
 //! that hold the centre of a sample go on being halved, so they cost some work a sample and not a mesh finer than it. No patch
 //! is left to its neighbours by adjacency either: each chart answers for its own square, within 2e-4 samples.
 //!
+//! Squares of a triangle's parameters end at its diagonal: what is found beyond is left out ([`triangle`]).
+//!
 //! # Practice
 //! [`Cutter`] cuts all patches for one tile of a picture, in parallel, in the order of the patches; the adapter draws every
 //! chart as the parallelogram that must hold it, with Newton's method in each fragment (`shaders/charts.wgsl`) and depth from the
@@ -36,6 +38,7 @@ mod lens;
 mod net;
 mod piece;
 mod solve;
+mod triangle;
 
 use super::View;
 use super::records::{ChartRecord, LensRecord, SpeckRecord};

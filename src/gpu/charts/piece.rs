@@ -5,6 +5,7 @@ use super::frame::{Flat, Frame};
 use super::lens::Lens;
 use super::net::{Net, Row, bezier_of_spline, bezier_through, combined, dot, greatest, halve, max, min, row};
 use super::solve::POINT;
+use super::triangle::Clip;
 use glam::DVec3;
 
 /// A bicubic piece of the surface, projected.
@@ -18,6 +19,8 @@ pub(super) struct Piece {
     pub size: [f64; 2],
     /// Levels that it is yet to be divided by along u and v, whatever it looks like.
     pub owed: [u8; 2],
+    /// Where the surface ends inside it.
+    pub clip: Option<Clip>,
 }
 
 impl Piece {
@@ -34,7 +37,7 @@ impl Piece {
         for net in &mut net {
             *net = bezier_of_spline(net);
         }
-        Piece { net, origin, size: [size; 2], owed }
+        Piece { net, origin, size: [size; 2], owed, clip: None }
     }
 
     /// The bicubic that goes through 4 x 4 points of a projected surface, given by the piece's own parameters: on its borders it
@@ -48,7 +51,17 @@ impl Piece {
                 (0..3).for_each(|c| net[c][j][i] = point[c]);
             }
         }
-        Piece { net: net.map(|values| bezier_through(&values)), origin, size: [size; 2], owed }
+        Piece { net: net.map(|values| bezier_through(&values)), origin, size: [size; 2], owed, clip: None }
+    }
+
+    /// The same, where the surface ends at a diagonal.
+    pub fn clipped(self, clip: Option<Clip>) -> Piece {
+        Piece { clip, ..self }
+    }
+
+    /// Whether all of it lies where the surface has ended.
+    pub fn is_beyond(&self) -> bool {
+        self.clip.is_some_and(|clip| clip.is_beyond(self.origin))
     }
 
     /// How far a surface, given by the patch's parameters, is from the piece at nine points between those of
@@ -143,7 +156,7 @@ impl Piece {
         origin[axis] += self.size[axis];
         let [x, y, depth] = &mut self.net;
         let net = [halve(x, along_v), halve(y, along_v), halve(depth, along_v)];
-        Piece { net, origin, size: self.size, owed: self.owed }
+        Piece { net, origin, size: self.size, owed: self.owed, clip: self.clip }
     }
 
     /// How the projection looks from the middle of the piece; `None` where it is singular there.

@@ -37,6 +37,7 @@ struct Search<'a> {
 impl Search<'_> {
     fn piece(&mut self, piece: &mut Piece, seen: Seen, depth: u32) {
         match seen {
+            _ if piece.is_beyond() => (),
             Seen::No => (),
             Seen::Straddles if depth == DEEPEST => (),
             Seen::Straddles => self.halves(piece, None, depth),
@@ -121,8 +122,10 @@ pub(super) fn newton(lens: &Lens, piece: &Piece, chart: &ChartFrame, p: [f64; 2]
         };
         if length(uv, next) < SETTLED {
             let depth = jet.value[2] + (next[0] - uv[0]) * jet.du[2] + (next[1] - uv[1]) * jet.dv[2];
-            return (length(next, target) <= BAND && depth >= lens.near)
-                .then(|| Hit { uv: piece.to_patch(next), depth });
+            // What lies beyond the diagonal of a triangle goes back to it.
+            let back = piece.clip.map_or(next, |clip| clip.brought_back(next, piece));
+            let is_inside = length(next, target) <= BAND && length(next, back) <= BAND;
+            return (is_inside && depth >= lens.near).then(|| Hit { uv: piece.to_patch(back), depth });
         }
         uv = next;
     }

@@ -2,7 +2,7 @@
 
 use super::basis::Basis;
 use super::{PatchSource, Storage, TABLE_LEVELS};
-use crate::gpu::shader::{LEVEL_TEXELS, SCALE_LEVELS};
+use crate::gpu::shader::{LEVEL_TEXELS, SCALE_LEVELS, TRIANGLE_TEXELS};
 use rayon::prelude::*;
 use std::collections::HashSet;
 use std::fmt;
@@ -91,6 +91,8 @@ pub(super) struct Plan {
     pub bases: Arc<Vec<Option<Basis>>>,
     /// Some patches are [`Storage::Gregory`].
     pub has_gregory: bool,
+    /// Patches are triangles.
+    pub has_triangles: bool,
     /// Texels in the table of points: matrices first, then patches.
     pub texels: u64,
     /// Bytes of all tables.
@@ -127,19 +129,33 @@ impl Plan {
 
     fn of(census: &Census, layout: TableLayout, bases: Arc<Vec<Option<Basis>>>, has_gregory: bool) -> Plan {
         let expanded = layout.expanded_levels();
-        let mut plan =
-            Plan { layout, expanded, bases, has_gregory, texels: 0, bytes: 0, matrices: 0, largest_patch: 0 };
+        let has_triangles = census.triangles + census.irregular_triangles > 0;
+        let mut plan = Plan {
+            layout,
+            expanded,
+            bases,
+            has_gregory,
+            has_triangles,
+            texels: 0,
+            bytes: 0,
+            matrices: 0,
+            largest_patch: 0,
+        };
         let matrices: usize = (0..plan.bases.len()).map(|class| plan.matrix_texels(class)).sum();
         let irregular: usize =
             census.classes.iter().enumerate().map(|(class, &count)| count * plan.irregular_texels(Some(class))).sum();
         let rest = census.regular * REGULAR_TEXELS
             + census.gregory * GREGORY_TEXELS
-            + census.classless * plan.irregular_texels(None);
+            + census.classless * plan.irregular_texels(None)
+            + census.triangles * plan.patch_texels(Storage::Triangle, None)
+            + census.irregular_triangles * plan.patch_texels(Storage::IrregularTriangle, None);
         plan.texels = (matrices + irregular + rest) as u64;
         plan.matrices = 16 * matrices as u64;
         let classes = census.classes.iter().enumerate().filter(|&(_, &count)| count > 0).map(|(class, _)| Some(class));
         let irregular = classes.chain((census.classless > 0).then_some(None)).map(|class| plan.irregular_texels(class));
-        plan.largest_patch = 16 * (1 + irregular.max().unwrap_or(0).max(GREGORY_TEXELS) as u64);
+        let triangle = plan.patch_texels(Storage::IrregularTriangle, None);
+        let triangle = if census.irregular_triangles > 0 { triangle } else { 0 };
+        plan.largest_patch = 16 * (1 + irregular.max().unwrap_or(0).max(triangle).max(GREGORY_TEXELS) as u64);
         plan.bytes =
             16 * (census.patches as u64 + plan.texels) + 8 * u64::from(SCALE_LEVELS) * census.eigenvalues as u64;
         plan
@@ -156,6 +172,8 @@ impl Plan {
             Storage::Regular => REGULAR_TEXELS,
             Storage::Gregory => GREGORY_TEXELS,
             Storage::Irregular => self.irregular_texels(class),
+            Storage::Triangle => TRIANGLE_TEXELS as usize,
+            Storage::IrregularTriangle => TABLE_LEVELS * TRIANGLE_TEXELS as usize + 1,
         }
     }
 
@@ -190,6 +208,8 @@ struct Census {
     classes: Vec<usize>,
     /// Irregular patches without a class.
     classless: usize,
+    triangles: usize,
+    irregular_triangles: usize,
     /// Different values of lambda.
     eigenvalues: usize,
 }
@@ -202,6 +222,8 @@ impl Census {
             gregory: 0,
             classes: vec![0; source.classes().len()],
             classless: 0,
+            triangles: 0,
+            irregular_triangles: 0,
             eigenvalues: 0,
         };
         let mut eigenvalues = HashSet::new();
@@ -214,9 +236,11 @@ impl Census {
                     eigenvalues.insert(source.classes()[class].lambda.to_bits());
                 }
                 (Storage::Irregular, None) => census.classless += 1,
+                (Storage::Triangle, _) => census.triangles += 1,
+                (Storage::IrregularTriangle, _) => census.irregular_triangles += 1,
             }
         }
-        census.eigenvalues = eigenvalues.len() + usize::from(census.classless > 0);
+        census.eigenvalues = eigenvalues.len() + usize::from(census.classless + census.irregular_triangles > 0);
         census
     }
 }

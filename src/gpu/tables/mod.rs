@@ -86,6 +86,11 @@ impl Tables {
         self.cells.iter().map(|&([u, v], _)| 0.5f64.powi(i32::from(u) + i32::from(v))).sum()
     }
 
+    /// Whether patches are triangles.
+    pub fn has_triangles(&self) -> bool {
+        self.plan.has_triangles
+    }
+
     /// Box round the surface.
     pub fn bounds(&self) -> [DVec3; 2] {
         self.bounds
@@ -104,6 +109,7 @@ impl Tables {
     /// What the passes that read them are compiled for.
     pub(super) fn content(&self) -> Content {
         match self.plan.layout {
+            _ if self.plan.has_triangles => Content::Triangles,
             _ if self.plan.has_gregory => Content::Gregory,
             TableLayout::Expanded => Content::Points,
             _ => Content::Tails,

@@ -161,6 +161,19 @@ fn place(net: PatchNet, expanded: usize, basis: Option<&Basis>, texels: &mut [[f
             texels[at] = [x, y, z, 0.0];
             (limit, KIND_IRREGULAR, stored as u32, picked.len() as u32 / 4, Some(lambda))
         }
+        TableNet::Triangle(points) => {
+            // Four zeros fill the last row.
+            let origin = points[4];
+            let local: [DVec3; 16] = std::array::from_fn(|k| points.get(k).map_or(DVec3::ZERO, |&p| p - origin));
+            local.chunks_exact(4).for_each(row);
+            (origin, KIND_REGULAR, 0, 0, None)
+        }
+        TableNet::IrregularTriangle { limit, normal, lambda, levels } => {
+            levels.iter().take(TABLE_LEVELS).for_each(|points| points.chunks_exact(4).for_each(&mut row));
+            let [x, y, z] = normal.as_vec3().to_array();
+            texels[at] = [x, y, z, 0.0];
+            (limit, KIND_IRREGULAR, levels.len().min(TABLE_LEVELS) as u32, 0, Some(lambda))
+        }
     };
     let kind = kind | u32::from(cell[0]) << 8 | u32::from(cell[1]) << 12;
     Placed { record: [0, kind | levels << 16 | groups << 21, 0, 0], cell: (cell, transition), origin, lambda }

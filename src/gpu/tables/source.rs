@@ -2,7 +2,7 @@
 
 use crate::adaptive::{AdaptivePatches, Gregory};
 use crate::osd::FarNet;
-use crate::stam::{ClassTable, LimitSurface, Net, Rings, WINDOW_POINTS};
+use crate::stam::{ClassTable, LOOP_WINDOW, LimitSurface, Net, Rings, WINDOW_POINTS, box_spline};
 use glam::DVec3;
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -36,6 +36,19 @@ pub enum TableNet {
     },
     /// An end cap of OpenSubdiv.
     Gregory(Gregory),
+    /// The 12 points of a triangle.
+    Triangle([DVec3; box_spline::POINTS]),
+    /// Levels of a Stam table of a triangle.
+    IrregularTriangle {
+        /// s0, the limit position at local (0,0).
+        limit: DVec3,
+        /// Limit normal there.
+        normal: DVec3,
+        /// Subdominant eigenvalue.
+        lambda: f64,
+        /// As [`Net::IrregularTriangle`], [`TABLE_LEVELS`](super::TABLE_LEVELS) of them.
+        levels: Vec<[DVec3; LOOP_WINDOW.len()]>,
+    },
 }
 
 /// What the tables take for a patch.
@@ -47,6 +60,10 @@ pub enum Storage {
     Irregular,
     /// 16 points and 4 differences.
     Gregory,
+    /// 12 points.
+    Triangle,
+    /// A table of levels of 16 points.
+    IrregularTriangle,
 }
 
 /// The nets that a patch consists of.
@@ -58,6 +75,10 @@ pub enum PatchNets<'a> {
     Irregular(Rings<'a>),
     /// A Bezier net with inner points that depend on (u,v).
     Gregory(Gregory),
+    /// 12 points of a triangle.
+    Triangle([DVec3; box_spline::POINTS]),
+    /// Three windows a level, of a triangle.
+    IrregularTriangle(Rings<'a>),
 }
 
 /// Where patches come from: the limit surface, OpenSubdiv's own patches, or regular nets.
@@ -77,8 +98,9 @@ pub trait PatchSource: Debug + Send + Sync {
         let PatchNet { levels, transition, net } = self.patch(patch, 1);
         let point = match net {
             TableNet::Regular(points) => points[5],
-            TableNet::Irregular { limit, .. } => limit,
+            TableNet::Irregular { limit, .. } | TableNet::IrregularTriangle { limit, .. } => limit,
             TableNet::Gregory(Gregory { bezier, .. }) => bezier[5],
+            TableNet::Triangle(points) => points[4],
         };
         (point, (levels, transition))
     }
@@ -98,24 +120,33 @@ impl PatchSource for LimitSurface {
     }
 
     fn storage(&self, patch: usize) -> Storage {
-        if self.class(patch).is_some() { Storage::Irregular } else { Storage::Regular }
+        match (self.class(patch).is_some(), self.has_triangles()) {
+            (false, false) => Storage::Regular,
+            (true, false) => Storage::Irregular,
+            (false, true) => Storage::Triangle,
+            (true, true) => Storage::IrregularTriangle,
+        }
     }
 
     fn classes(&self) -> &[ClassTable] {
-        self.tables()
+        // Triangles are stored level by level.
+        if self.has_triangles() { &[] } else { self.tables() }
     }
 
     fn class(&self, patch: usize) -> Option<usize> {
-        self.class(patch)
+        self.class(patch).filter(|_| !self.has_triangles())
     }
 
     fn patch(&self, patch: usize, levels: usize) -> PatchNet {
         let record = self.patches()[patch];
+        let normal = || self.evaluate(patch, [0.0, 0.0]).normal;
         let net = match self.net(patch, levels) {
-            Net::Regular(points) => TableNet::Regular(points),
-            Net::Irregular { limit, lambda, levels } => {
-                TableNet::Irregular { limit, normal: self.evaluate(patch, [0.0, 0.0]).normal, lambda, levels }
+            Net::Triangle(points) => TableNet::Triangle(points),
+            Net::IrregularTriangle { limit, lambda, levels } => {
+                TableNet::IrregularTriangle { limit, normal: normal(), lambda, levels }
             }
+            Net::Regular(points) => TableNet::Regular(points),
+            Net::Irregular { limit, lambda, levels } => TableNet::Irregular { limit, normal: normal(), lambda, levels },
         };
         PatchNet { levels: record.levels(), transition: record.transition, net }
     }
@@ -126,9 +157,11 @@ impl PatchSource for LimitSurface {
     }
 
     fn nets(&self, patch: usize) -> PatchNets<'_> {
-        match self.rings(patch) {
-            Some(rings) => PatchNets::Irregular(rings),
-            None => PatchNets::Regular(self.regular_net(patch)),
+        match (self.rings(patch), self.has_triangles()) {
+            (Some(rings), false) => PatchNets::Irregular(rings),
+            (None, false) => PatchNets::Regular(self.regular_net(patch)),
+            (Some(rings), true) => PatchNets::IrregularTriangle(rings),
+            (None, true) => PatchNets::Triangle(self.triangle_net(patch)),
         }
     }
 

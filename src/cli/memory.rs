@@ -1,0 +1,44 @@
+//! `--memory-limit`.
+
+use super::Failure;
+use crate::memory;
+use bytesize::ByteSize;
+use clap::Args;
+use sysinfo::{MemoryRefreshKind, RefreshKind, System};
+
+#[derive(Debug, Args)]
+pub(super) struct MemoryArgs {
+    /// Memory that the command may take, such as 6GiB or 500MB: what needs more is refused beforehand [default: what is free]
+    #[arg(long, global = true, value_name = "SIZE")]
+    memory_limit: Option<ByteSize>,
+}
+
+impl MemoryArgs {
+    /// Lets the limit hold from now on.
+    pub fn apply(&self) -> Result<(), Failure> {
+        match self.memory_limit {
+            Some(ByteSize(0)) => {
+                Err(Failure::Bad("--memory-limit 0: nothing fits in there; give a size above 0".to_owned()))
+            }
+            Some(ByteSize(limit)) => {
+                memory::set_limit(limit);
+                Ok(())
+            }
+            None => {
+                if let Some(free) = free() {
+                    memory::set_limit(free);
+                }
+                Ok(())
+            }
+        }
+    }
+}
+
+/// What the system has to give, or all that it gives to this process's group (of which caches, that it takes back, count as
+/// used); `None` where it does not say.
+fn free() -> Option<u64> {
+    let memory = RefreshKind::nothing().with_memory(MemoryRefreshKind::nothing().with_ram());
+    let system = System::new_with_specifics(memory).ok()?;
+    let group = system.cgroup_limits().map_or(u64::MAX, |limits| limits.total_memory);
+    Some(system.available_memory().min(group)).filter(|&bytes| bytes > 0)
+}
