@@ -35,7 +35,7 @@ fn limit_point(record: vec4u, uv: vec2f) -> LimitPoint {
         } else {
             first += level * LEVEL_TEXELS + 3u * row;
         }
-        scale = textureLoad(scales, at(record.z + n - 1u), 0).xy;
+        scale = textureLoad(scales, at(first_scale(record) + n - 1u), 0).xy;
     }
     var bu = basis(t.x);
     var bv = basis(t.y);
@@ -102,15 +102,31 @@ fn limit_point(record: vec4u, uv: vec2f) -> LimitPoint {
         du += vec3f(dot(x, b), dot(y, b), dot(z, b));
         dv += vec3f(dot(x, c), dot(y, c), dot(z, c));
     }
+    var moved = mat3x3f(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
+    if is_instance(record) {
+        moved = transform_of(record);
+        position = moved * position;
+        du = moved * du;
+        dv = moved * dv;
+    }
     // The normal comes from the normalised derivatives, without any power of two (docs/LIMIT.md, section 4).
     var normal = unit_or_zero(cross(unit_or_zero(du), unit_or_zero(dv)));
     if centre {
         position = vec3f(0.0);
         normal = point_texel(normal_texel(record)).xyz;
+        if is_instance(record) {
+            // Cofactors move the product of two vectors as the matrix moves both.
+            let cofactors = mat3x3f(cross(moved[1], moved[2]), cross(moved[2], moved[0]), cross(moved[0], moved[1]));
+            normal = unit_or_zero(cofactors * normal);
+        }
     }
     var curvature = vec3f(0.0);
     if READS_CURVATURE && !centre {
-        let second = second_derivatives(record, first, t);
+        let stored = second_derivatives(record, first, t);
+        var second = stored;
+        if is_instance(record) {
+            second = moved * stored;
+        }
         // Second derivatives scale as du du / s, with s the scale of positions, so curvatures as 1 / s.
         curvature = curvatures(du, dv, normal, second) * vec3f(1.0 / scale.x, 1.0 / (scale.x * scale.x), 1.0);
     }

@@ -101,7 +101,7 @@ pub struct Sample {
 pub struct Gpu {
     device: Device,
     /// For each content of tables.
-    passes: [Passes; 4],
+    passes: [Passes; Content::ALL.len()],
     startup: Duration,
 }
 

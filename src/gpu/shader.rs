@@ -71,16 +71,27 @@ pub(super) enum Content {
     Gregory,
     /// Triangles.
     Triangles,
+    /// As `Points`, some patches others in another place.
+    Instances,
+    /// As `Tails`, likewise.
+    InstancesWithTails,
 }
 
 impl Content {
-    pub const ALL: [Self; 4] = [Self::Points, Self::Tails, Self::Gregory, Self::Triangles];
+    pub const ALL: [Self; 6] =
+        [Self::Points, Self::Tails, Self::Gregory, Self::Triangles, Self::Instances, Self::InstancesWithTails];
+
+    /// Whether levels may be given by picked points.
+    pub fn has_tail(self) -> bool {
+        matches!(self, Self::Tails | Self::InstancesWithTails)
+    }
 
     pub fn variant(self, block_rows: u32) -> Variant {
         Variant {
             block_rows,
-            has_tail: self == Self::Tails,
+            has_tail: self.has_tail(),
             has_gregory: self == Self::Gregory,
+            has_instances: matches!(self, Self::Instances | Self::InstancesWithTails),
             triangles: self == Self::Triangles,
         }
     }
@@ -93,6 +104,7 @@ pub(super) struct Variant {
     pub block_rows: u32,
     pub has_tail: bool,
     pub has_gregory: bool,
+    pub has_instances: bool,
     pub triangles: bool,
 }
 
@@ -110,7 +122,8 @@ impl Module {
     pub fn source(&self, method: &Method) -> String {
         // Levels that are given by picked points have no second derivatives.
         let has_tail = !method.reads_curvature();
-        let variant = Variant { block_rows: BLOCK_ROWS, has_tail, has_gregory: true, triangles: false };
+        let variant =
+            Variant { block_rows: BLOCK_ROWS, has_tail, has_gregory: true, has_instances: true, triangles: false };
         self.source_for(&variant, &method.wgsl())
     }
 
@@ -294,7 +307,8 @@ fn constants(variant: &Variant) -> String {
         let matrices: Vec<String> = matrices.collect();
         text.push_str(&format!("const BOX_SPLINE = array({});\n", matrices.join(", ")));
     }
-    text.push_str(&format!("const HAS_TAIL = {};\nconst HAS_GREGORY = {};\n", variant.has_tail, variant.has_gregory));
+    let has = [("TAIL", variant.has_tail), ("GREGORY", variant.has_gregory), ("INSTANCES", variant.has_instances)];
+    text.extend(has.map(|(name, is)| format!("const HAS_{name} = {is};\n")));
     text
 }
 

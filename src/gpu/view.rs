@@ -2,9 +2,7 @@
 
 use super::fields::FieldNumbers;
 use super::records::{FrameRecord, LightRecord, ResolveRecord, ShadeRecord};
-use super::shader::{
-    Content, PATTERN_BAND, PATTERN_CIRCLES, PATTERN_HEAT, PATTERN_LATTICE, PATTERN_PICTURE, PATTERN_STRIPES,
-};
+use super::shader::{PATTERN_BAND, PATTERN_CIRCLES, PATTERN_HEAT, PATTERN_LATTICE, PATTERN_PICTURE, PATTERN_STRIPES};
 use super::{GpuError, Tables};
 use crate::field::{Camera, Field, Light, Palette, Pattern};
 use glam::DVec3;
@@ -102,7 +100,7 @@ impl View {
     /// Refuses what cannot be drawn.
     pub(super) fn check(&self, tables: &Tables) -> Result<(), GpuError> {
         let fail = |message: String| Err(GpuError::View(message));
-        if self.field.method.reads_curvature() && tables.content() == Content::Tails {
+        if self.field.method.reads_curvature() && tables.content().has_tail() {
             return fail("curvature is read from tables in the expanded layout only (--tables expanded)".into());
         }
         if tables.has_triangles() && self.pipeline != Pipeline::Exact {

@@ -253,8 +253,12 @@ pub enum MeshError {
     TransformUnknown { at: Place, op: String },
     #[error("{at}: xformOpOrder has {op}, which has no value; give it one or leave it out")]
     TransformMissing { at: Place, op: String },
-    #[error("{at}: a PointInstancer, which is not read so far; make its instances prims")]
+    #[error("{at}: a PointInstancer without {name}; give it prototypes, protoIndices and positions")]
+    InstancerIncomplete { at: Place, name: &'static str },
+    #[error("{at}: a PointInstancer in a prototype, which is not read; make its instances prims")]
     InstancerUnsupported { at: Place },
+    #[error("{at}: protoIndices has {index}, but the number of prototypes is {count}; correct it")]
+    PrototypeUnknown { at: Place, index: u32, count: usize },
     #[error(
         "{at}: interpolateBoundary is none and that of other meshes is not, but a scene has one rule; \
          make them agree"

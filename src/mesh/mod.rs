@@ -11,6 +11,7 @@ mod error;
 mod lines;
 mod measure;
 mod obj;
+mod originals;
 mod parts;
 mod polygon;
 mod sample;
@@ -26,6 +27,7 @@ use glam::DVec3;
 use crate::memory;
 
 pub use error::{MeshError, Place, Spot};
+pub use originals::Originals;
 pub use parts::{Part, PtexParts, Repeat};
 pub use sample::sample;
 pub use scheme::Scheme;

@@ -124,7 +124,7 @@ pub(super) fn check_counts(mesh: &SubdivMesh, at: &Place) -> Result<(), MeshErro
 }
 
 /// OpenSubdiv counts in `int`.
-fn check_limit(what: &'static str, count: usize, at: &Place) -> Result<(), MeshError> {
+pub(super) fn check_limit(what: &'static str, count: usize, at: &Place) -> Result<(), MeshError> {
     if i32::try_from(count).is_err() {
         let at = at.clone();
         return Err(MeshError::TooMany { at, what, count });

@@ -230,6 +230,21 @@ impl Adjacency {
         Self { offsets, neighbours: found.into_iter().map(|(_, neighbour)| neighbour).collect() }
     }
 
+    /// The same for runs of these patches one after the other, some of them more than once. No run has neighbours in another.
+    pub(crate) fn repeated(&self, runs: impl Iterator<Item = Range<u32>>) -> Self {
+        let mut out = Self { offsets: vec![0], neighbours: Vec::new() };
+        for run in runs {
+            let first = (out.offsets.len() as u32 - 1) / 4;
+            let slots = 4 * run.start as usize..4 * run.end as usize;
+            let found = self.offsets[slots.start]..self.offsets[slots.end];
+            let before = out.neighbours.len() as u32;
+            out.offsets.extend(self.offsets[slots.start + 1..=slots.end].iter().map(|at| at - found.start + before));
+            let moved = |n: &Neighbour| Neighbour { patch: n.patch - run.start + first, ..*n };
+            out.neighbours.extend(self.neighbours[found.start as usize..found.end as usize].iter().map(moved));
+        }
+        out
+    }
+
     /// What lies across a patch's edge, in the order in which the edge runs; nothing on a boundary, at a hole, or where
     /// the mesh is not manifold.
     pub fn across(&self, patch: usize, edge: u8) -> &[Neighbour] {

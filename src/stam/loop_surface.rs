@@ -71,7 +71,8 @@ impl LimitSurface {
         let points: [Option<DVec3>; POINTS] =
             std::array::from_fn(|k| (support[k] != PHANTOM).then(|| self.refined_point(support[k])));
         let at = |place: [isize; 2]| LATTICE.iter().position(|&point| point == place).and_then(|k| points[k]);
-        std::array::from_fn(|k| points[k].unwrap_or_else(|| phantom(LATTICE[k], at)))
+        let net = std::array::from_fn(|k| points[k].unwrap_or_else(|| phantom(LATTICE[k], at)));
+        self.moved_from_stored(patch, net)
     }
 }
 

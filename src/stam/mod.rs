@@ -8,6 +8,7 @@ mod bspline;
 mod class;
 mod curvature;
 mod evaluate;
+mod instances;
 mod loop_modes;
 mod loop_rows;
 mod loop_surface;

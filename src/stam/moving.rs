@@ -21,7 +21,8 @@ pub enum MoveError {
 /// A limit surface that follows the control points of its mesh.
 ///
 /// Refinement, patches, classes with their tables, and [`adjacency`](LimitSurface::adjacency) stay; a move interpolates
-/// the refined points again, which is linear in their number. The result is that of [`LimitSurface::new`], to the last bit.
+/// the refined points again, which is linear in their number. The result is that of [`LimitSurface::new`], to the last bit if no
+/// part repeats another: those are refined each by itself here.
 #[derive(Debug)]
 pub struct MovingSurface {
     refinement: Refinement,

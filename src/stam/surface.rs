@@ -2,10 +2,11 @@
 
 use super::box_spline;
 use super::class::{ClassTable, WINDOW_POINTS};
+use super::instances::{Instances, Placed};
 use super::loop_rows::LOOP_WINDOW;
 use crate::mesh::SubdivMesh;
 use crate::patch::{Adjacency, PHANTOM, Patch, PatchError, PatchKind, Patches, Refinement, RingClass, Watch, slot};
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -45,11 +46,14 @@ pub struct LimitSurface {
     tables: Arc<Vec<ClassTable>>,
     /// Refined points of all levels.
     points: Arc<Vec<DVec3>>,
+    /// Where parts of a scene are others in another place, what is in `patches` and `points` once.
+    instances: Option<Arc<Instances>>,
     diagonal: f64,
 }
 
 impl LimitSurface {
-    /// Refines the mesh and builds its patches and tables.
+    /// Refines the mesh and builds its patches and tables. Parts that repeat others ([`Part::repeats`](crate::mesh::Part::repeats))
+    /// take the patches and refined points of those, which are moved as they are read.
     ///
     /// # Errors
     /// The mesh is not valid, OpenSubdiv refuses it, or a face stays without a closed form.
@@ -62,6 +66,15 @@ impl LimitSurface {
     /// # Errors
     /// As [`new`](Self::new).
     pub fn watched(mesh: &SubdivMesh, watch: Watch<'_>) -> Result<Self, PatchError> {
+        let Some(originals) = mesh.originals() else { return Self::flat(mesh, watch) };
+        mesh.validate_points().map_err(crate::osd::Error::from)?;
+        let stored = Self::flat(&originals.mesh, watch)?;
+        let instances = Instances::new(mesh, &originals, &stored.patches);
+        Ok(Self { instances: Some(Arc::new(instances)), diagonal: mesh.diagonal(), ..stored })
+    }
+
+    /// As [`watched`](Self::watched), with everything stored as often as it is there.
+    pub(crate) fn flat(mesh: &SubdivMesh, watch: Watch<'_>) -> Result<Self, PatchError> {
         let (patches, points) = Patches::with_points(mesh, watch)?;
         Ok(Self::of(patches, points, mesh))
     }
@@ -79,13 +92,35 @@ impl LimitSurface {
             patches: Arc::new(patches),
             tables: Arc::new(tables),
             points: Arc::new(points),
+            instances: None,
             diagonal: mesh.diagonal(),
         }
     }
 
     /// All patches, in ptex order.
     pub fn patches(&self) -> &[Patch] {
-        self.patches.all()
+        self.instances.as_ref().map_or(self.patches.all(), |instances| instances.patches())
+    }
+
+    /// Number of patches that are stored: those of instances are those of their originals.
+    pub fn stored_patches(&self) -> usize {
+        self.patches.all().len()
+    }
+
+    /// Of a patch of an instance: the earlier patch that it repeats, and which of [`transforms`](Self::transforms) moves that.
+    pub fn instance(&self, patch: usize) -> Option<(usize, usize)> {
+        self.instances.as_ref()?.original(patch)
+    }
+
+    /// What moves the originals of instances, one an instance.
+    pub fn transforms(&self) -> Vec<DAffine3> {
+        let parts = self.instances.iter().flat_map(|instances| instances.parts());
+        parts.filter_map(|part| part.transform).collect()
+    }
+
+    /// Where a patch is stored, and what moves it from there.
+    fn stored(&self, patch: usize) -> (usize, Option<&DAffine3>) {
+        self.instances.as_ref().map_or((patch, None), |instances| instances.stored(patch))
     }
 
     /// The classes of the irregular patches, in the order of their tables.
@@ -100,17 +135,18 @@ impl LimitSurface {
 
     /// Index into [`classes`](Self::classes) of an irregular patch.
     pub fn class(&self, patch: usize) -> Option<usize> {
-        self.patches.class(patch)
+        self.patches.class(self.stored(patch).0)
     }
 
     /// Bytes of patches and points; tables of classes are small beside them.
     pub fn bytes(&self) -> u64 {
-        self.patches.bytes() + size_of_val(&self.points[..]) as u64
+        let instances = self.instances.as_ref().map_or(0, |instances| size_of_val(instances.patches()));
+        self.patches.bytes() + (size_of_val(&self.points[..]) + instances) as u64
     }
 
     /// Number of ptex faces, holes included.
     pub fn ptex_count(&self) -> usize {
-        self.patches.ptex_count()
+        self.instances.as_ref().map_or(self.patches.ptex_count(), |instances| instances.ptex_count())
     }
 
     /// Length of the bounding-box diagonal of the control points: the unit of every tolerance.
@@ -122,11 +158,22 @@ impl LimitSurface {
     /// combinations). `None` for a surface without patches.
     pub fn bounds(&self) -> Option<[DVec3; 2]> {
         let both = |[low, high]: [DVec3; 2], [a, b]: [DVec3; 2]| [low.min(a), high.max(b)];
-        let of = |vertices: &[u32]| {
-            let used = vertices.iter().filter(|&&vertex| vertex != PHANTOM);
-            used.map(|&vertex| [self.points[vertex as usize]; 2]).reduce(both)
+        let used = |vertex: &&u32| **vertex != PHANTOM;
+        let Some(instances) = &self.instances else {
+            let of = |vertices: &[u32]| {
+                vertices.iter().filter(used).map(|&vertex| [self.points[vertex as usize]; 2]).reduce(both)
+            };
+            return self.patches.supports().par_chunks(1 << 16).filter_map(of).reduce_with(both);
         };
-        self.patches.supports().par_chunks(1 << 16).filter_map(of).reduce_with(both)
+        let of_part = |part: &Placed| {
+            let place = |&vertex: &u32| {
+                let stored = self.points[vertex as usize];
+                [part.transform.map_or(stored, |transform| transform.transform_point3(stored)); 2]
+            };
+            let supports = part.stored.clone().flat_map(|patch| self.patches.support(patch as usize));
+            supports.filter(used).map(place).reduce(both)
+        };
+        instances.parts().par_iter().filter_map(of_part).reduce_with(both)
     }
 
     /// The patch at (u,v), each 0 to 1, of a ptex face, and the patch-local parameters; `None` in a hole.
@@ -134,12 +181,18 @@ impl LimitSurface {
     /// # Panics
     /// `ptex` is not below [`ptex_count`](Self::ptex_count).
     pub fn locate(&self, ptex: u32, uv: [f64; 2]) -> Option<(usize, [f64; 2])> {
-        self.patches.locate(ptex, uv)
+        let Some(instances) = &self.instances else { return self.patches.locate(ptex, uv) };
+        let (stored, to_scene) = instances.stored_ptex(ptex);
+        self.patches.locate(stored, uv).map(|(patch, uv)| (to_scene(patch), uv))
     }
 
     /// What lies across every edge of every patch.
     pub fn adjacency(&self) -> Adjacency {
-        Adjacency::new(&self.patches)
+        let stored = Adjacency::new(&self.patches);
+        match &self.instances {
+            Some(instances) => stored.repeated(instances.parts().iter().map(|part| part.stored.clone())),
+            None => stored,
+        }
     }
 
     /// The kind of a patch.
@@ -149,14 +202,16 @@ impl LimitSurface {
 
     /// Some control point of a patch, phantom points left out.
     pub(crate) fn control_point(&self, patch: usize) -> DVec3 {
-        let mut support = self.patches.support(patch).iter();
+        let (stored, transform) = self.stored(patch);
+        let mut support = self.patches.support(stored).iter();
         let vertex = support.find(|&&vertex| vertex != PHANTOM).expect("corners are control points");
-        self.points[*vertex as usize]
+        let point = self.points[*vertex as usize];
+        transform.map_or(point, |transform| transform.transform_point3(point))
     }
 
     /// Refined vertices that control a patch, [`PHANTOM`] where there is none.
     pub(crate) fn support(&self, patch: usize) -> &[u32] {
-        self.patches.support(patch)
+        self.patches.support(self.stored(patch).0)
     }
 
     /// Whether patches are triangles, under Loop's scheme.
@@ -164,12 +219,20 @@ impl LimitSurface {
         self.patches.are_triangles()
     }
 
+    /// A net of stored points, moved to where the patch is.
+    pub(super) fn moved_from_stored<const N: usize>(&self, patch: usize, net: [DVec3; N]) -> [DVec3; N] {
+        match self.stored(patch).1 {
+            Some(transform) => net.map(|point| transform.transform_point3(point)),
+            None => net,
+        }
+    }
+
     /// A point of the unit square, folded into the triangle where patches are triangles.
     pub(crate) fn folded(&self, [u, v]: [f64; 2]) -> [f64; 2] {
         if self.has_triangles() && u + v > 1.0 { [1.0 - u, 1.0 - v] } else { [u, v] }
     }
 
-    /// A refined point.
+    /// A refined point, where it is stored.
     pub(super) fn refined_point(&self, vertex: u32) -> DVec3 {
         self.points[vertex as usize]
     }
@@ -187,6 +250,7 @@ impl LimitSurface {
     /// A surface with an error: point `point` of the support of a patch is moved, for this patch alone (strips along a
     /// crease share their support). `None` if there is no such point.
     pub(crate) fn with_point_moved(&self, patch: usize, point: usize, by: DVec3) -> Option<Self> {
+        let patch = self.stored(patch).0;
         let vertex = *self.patches.support(patch).get(point).filter(|&&vertex| vertex != PHANTOM)?;
         let (mut patches, mut points) = ((*self.patches).clone(), (*self.points).clone());
         patches.set_support(patch, point, points.len() as u32);
@@ -196,11 +260,13 @@ impl LimitSurface {
 
     /// The 16 points of a regular patch, phantom points filled in.
     pub(crate) fn regular_net(&self, patch: usize) -> [DVec3; 16] {
+        let (patch, transform) = self.stored(patch);
         let support = self.patches.support(patch);
         let mut net = [DVec3::ZERO; 16];
         for (point, &vertex) in net.iter_mut().zip(support) {
             if vertex != PHANTOM {
-                *point = self.points[vertex as usize];
+                let stored = self.points[vertex as usize];
+                *point = transform.map_or(stored, |transform| transform.transform_point3(stored));
             }
         }
         // A point beyond a sharp edge mirrors the inner row at the edge: rows first, then columns, which fills corners.
@@ -225,8 +291,12 @@ impl LimitSurface {
 
     /// Control points of an irregular patch relative to s0, and s0.
     pub(super) fn irregular_net(&self, patch: usize, table: &ClassTable) -> (Vec<DVec3>, DVec3) {
-        let mut points: Vec<DVec3> =
-            self.patches.support(patch).iter().map(|&vertex| self.points[vertex as usize]).collect();
+        let (patch, transform) = self.stored(patch);
+        let stored = self.patches.support(patch).iter().map(|&vertex| self.points[vertex as usize]);
+        let mut points: Vec<DVec3> = match transform {
+            Some(transform) => stored.map(|point| transform.transform_point3(point)).collect(),
+            None => stored.collect(),
+        };
         // Relative to the vertex first: world coordinates would cost digits.
         let centre = points[0];
         let offset = points.iter().zip(&table.limit).map(|(&p, &w)| w * (p - centre)).sum::<DVec3>();

@@ -243,7 +243,7 @@ fn our_weights(
 ) -> Result<Option<Vec<[f64; 3]>>, VerifyError> {
     let mesh = plant.map_or_else(|| Ok(subject.mesh.clone()), |plant| plant.mesh(subject.mesh))?;
     let (_, mut refinement) = Patches::new(&mesh)?;
-    let base = LimitSurface::new(&mesh)?;
+    let base = LimitSurface::flat(&mesh, &|_, _| ())?;
     let mut weights = Vec::new();
     for three in vertices.chunks(3) {
         let mut points = vec![DVec3::ZERO; mesh.points.len()];

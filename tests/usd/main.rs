@@ -6,6 +6,7 @@ mod common;
 mod blender;
 mod corrupt;
 mod fixtures;
+mod instances;
 mod prims;
 mod program;
 mod refused;

@@ -122,7 +122,7 @@ fn the_program_names_prims() {
         (&0.001.into(), &serde_json::json!([4, 4]))
     );
     let text = String::from_utf8(run(folder, &["info", "mesh.usda"]).stdout).expect("text");
-    assert!(text.contains("/b (faces: 2; ptex faces: 4 to 7)") && text.contains("0.001 m"), "{text}");
+    assert!(text.contains("/b (faces: 2; ptex faces: 4 to 7; shared with /a)") && text.contains("0.001 m"), "{text}");
     let alone = json(&run(folder, &["info", "mesh.usda", "--json", "--prim", "/b"]), None);
     assert_eq!((&alone["faces"], alone["prims"].as_array().map(Vec::len)), (&2.into(), Some(1)));
 

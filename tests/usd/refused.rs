@@ -149,7 +149,20 @@ fn scenes_that_have_no_mesh_or_not_all_of_it() {
     let instancer = format!("def PointInstancer \"p\"\n{{\n{}\n}}\n", prim("m", SQUARE));
     assert_eq!(
         refusal(&instancer),
-        "mesh.usda: /p: a PointInstancer, which is not read so far; make its instances prims"
+        "mesh.usda: /p: a PointInstancer without protoIndices; give it prototypes, protoIndices and positions"
+    );
+    let with = |what: &str| {
+        let rel =
+            "rel prototypes = [</p/m>]\nint[] protoIndices = [0, 0]\npoint3f[] positions = [(0, 0, 0), (5, 0, 0)]\n";
+        refusal(&format!(
+            "def PointInstancer \"p\"\n{{\n{}\n}}\n",
+            prim("m", SQUARE) + &rel.replace(what, &what.replace(", 0]", ", 7]").replace("), (5", "), (1, 1, 1), (5"))
+        ))
+    };
+    assert_eq!(with("[0, 0]"), "mesh.usda: /p: protoIndices has 7, but the number of prototypes is 1; correct it");
+    assert_eq!(
+        with("[(0, 0, 0), (5, 0, 0)]"),
+        "mesh.usda: /p: positions has 3 values; write 2, one for each of protoIndices"
     );
     let none = prim("a", &format!("{SQUARE}token interpolateBoundary = \"none\"")) + &prim("b", SQUARE);
     assert!(

@@ -54,6 +54,8 @@ struct Info {
     creasing: &'static str,
     /// Patches by kind.
     patches: BTreeMap<&'static str, usize>,
+    /// Patches that are stored: those of instances are those of what they repeat.
+    stored_patches: usize,
     /// Patches whose extraordinary vertex has no tangent plane.
     without_tangent_plane: usize,
     /// Patches by depth in the quadtree of their ptex face.
@@ -73,6 +75,9 @@ struct Info {
 #[derive(Debug, Serialize)]
 struct Prim {
     prim: String,
+    /// The prim whose patches, refined points and tables it shares: it is the same mesh in another place.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    shares: Option<String>,
     /// First and number of its faces, ptex faces and vertices among those of the whole.
     faces: [u32; 2],
     ptex_faces: [u32; 2],
@@ -109,6 +114,7 @@ fn collect(mesh: &SubdivMesh, surface: &LimitSurface, control: &Level) -> Info {
         edges: control.edge_sharpness.len(),
         holes: control.face_holes.iter().filter(|&&hole| hole != 0).count(),
         classes: surface.classes().len(),
+        stored_patches: surface.stored_patches(),
         class_table_bytes: surface.tables().iter().map(|table| table.bytes()).sum(),
         gpu_table_bytes: gpu::tables::bytes(surface, gpu::TableLayout::Auto),
         gpu_table_bytes_by_layout: gpu::TableLayout::ALL
@@ -147,6 +153,7 @@ fn prims(mesh: &SubdivMesh) -> Vec<Prim> {
     let span = |range: &Range<u32>| [range.start, range.end - range.start];
     let prim = |(part, ptex): (&Part, Range<u32>)| Prim {
         prim: part.name.clone(),
+        shares: part.repeats.map(|repeat| mesh.parts[repeat.part as usize].name.clone()),
         faces: span(&part.faces),
         ptex_faces: span(&ptex),
         vertices: span(&part.points),
@@ -218,10 +225,11 @@ fn describe(info: &Info) -> String {
         info.edges, info.boundary_edges, info.non_manifold_edges, info.semi_sharp_edges, info.infinitely_sharp_edges
     );
     let mut rows = vec![("mesh", info.mesh.clone())];
-    for Prim { prim, faces, ptex_faces, .. } in &info.prims {
+    for Prim { prim, shares, faces, ptex_faces, .. } in &info.prims {
         let [first, count] = ptex_faces;
         let end = first + count.saturating_sub(1);
-        rows.push(("  prim", format!("{prim} (faces: {}; ptex faces: {first} to {end})", faces[1])));
+        let shares = shares.as_ref().map_or_else(String::new, |prim| format!("; shared with {prim}"));
+        rows.push(("  prim", format!("{prim} (faces: {}; ptex faces: {first} to {end}{shares})", faces[1])));
     }
     rows.extend(info.meters_per_unit.map(|meters| ("unit", format!("{meters} m (the stage's; nothing is converted)"))));
     rows.extend(info.up.map(|[_, y, _]| ("up", if y > 0.5 { "Y" } else { "Z" }.to_owned())));

@@ -3,6 +3,7 @@
 use super::basis::Basis;
 use super::{PatchSource, Storage, TABLE_LEVELS};
 use crate::gpu::shader::{LEVEL_TEXELS, SCALE_LEVELS, TRIANGLE_TEXELS};
+use glam::DAffine3;
 use rayon::prelude::*;
 use std::collections::HashSet;
 use std::fmt;
@@ -93,7 +94,9 @@ pub(super) struct Plan {
     pub has_gregory: bool,
     /// Patches are triangles.
     pub has_triangles: bool,
-    /// Texels in the table of points: matrices first, then patches.
+    /// What moves instances; none where there are more than records can count, so that every patch has its own points.
+    pub transforms: Vec<DAffine3>,
+    /// Texels in the table of points: transforms and matrices first, then patches.
     pub texels: u64,
     /// Bytes of all tables.
     pub bytes: u64,
@@ -106,8 +109,11 @@ pub(super) struct Plan {
 impl Plan {
     /// Plans `layout`; `Auto` keeps to [`BUDGET`] and to `limit` texels of points.
     pub fn new<S: PatchSource + ?Sized>(source: &S, layout: TableLayout, limit: u64) -> Plan {
-        let census = Census::new(source);
-        let of = |layout: TableLayout| Plan::of(&census, layout, bases(source, layout), census.gregory > 0);
+        let transforms = shared(source);
+        let census = Census::new(source, &transforms);
+        let of = |layout: TableLayout| {
+            Plan::of(&census, layout, bases(source, layout), census.gregory > 0, transforms.clone())
+        };
         if layout != TableLayout::Auto {
             return of(layout);
         }
@@ -122,12 +128,19 @@ impl Plan {
         }
     }
 
-    /// The plan of some patches of the source that this one is for: in the same layout, with the same matrices.
+    /// The plan of some patches of the source that this one is for: in the same layout, with the same matrices, each patch with
+    /// points of its own.
     pub fn for_part<S: PatchSource + ?Sized>(&self, part: &S) -> Plan {
-        Plan::of(&Census::new(part), self.layout, self.bases.clone(), self.has_gregory)
+        Plan::of(&Census::new(part, &[]), self.layout, self.bases.clone(), self.has_gregory, Vec::new())
     }
 
-    fn of(census: &Census, layout: TableLayout, bases: Arc<Vec<Option<Basis>>>, has_gregory: bool) -> Plan {
+    fn of(
+        census: &Census,
+        layout: TableLayout,
+        bases: Arc<Vec<Option<Basis>>>,
+        has_gregory: bool,
+        transforms: Vec<DAffine3>,
+    ) -> Plan {
         let expanded = layout.expanded_levels();
         let has_triangles = census.triangles + census.irregular_triangles > 0;
         let mut plan = Plan {
@@ -135,6 +148,7 @@ impl Plan {
             expanded,
             bases,
             has_gregory,
+            transforms,
             has_triangles,
             texels: 0,
             bytes: 0,
@@ -149,7 +163,7 @@ impl Plan {
             + census.classless * plan.irregular_texels(None)
             + census.triangles * plan.patch_texels(Storage::Triangle, None)
             + census.irregular_triangles * plan.patch_texels(Storage::IrregularTriangle, None);
-        plan.texels = (matrices + irregular + rest) as u64;
+        plan.texels = (plan.transforms.len() * TRANSFORM_TEXELS + matrices + irregular + rest) as u64;
         plan.matrices = 16 * matrices as u64;
         let classes = census.classes.iter().enumerate().filter(|&(_, &count)| count > 0).map(|(class, _)| Some(class));
         let irregular = classes.chain((census.classless > 0).then_some(None)).map(|class| plan.irregular_texels(class));
@@ -200,7 +214,20 @@ fn bases<S: PatchSource + ?Sized>(source: &S, layout: TableLayout) -> Arc<Vec<Op
     Arc::new(classes.par_iter().map(|table| Basis::new(table, levels.clone())).collect())
 }
 
-/// How many patches there are of each class.
+/// Texels of a transform: the columns of its matrix.
+pub(super) const TRANSFORM_TEXELS: usize = 3;
+
+/// Transforms that records can count, and scales that they can point to: 16 bits each.
+const MOST_TRANSFORMS: usize = u16::MAX as usize;
+
+/// What moves the instances that share points with their originals.
+fn shared<S: PatchSource + ?Sized>(source: &S) -> Vec<DAffine3> {
+    let transforms = source.transforms();
+    let scales = SCALE_LEVELS as usize * source.classes().len();
+    if transforms.len() <= MOST_TRANSFORMS && scales <= MOST_TRANSFORMS { transforms } else { Vec::new() }
+}
+
+/// How many patches there are, and how many with points of their own of each class.
 struct Census {
     patches: usize,
     regular: usize,
@@ -215,7 +242,7 @@ struct Census {
 }
 
 impl Census {
-    fn new<S: PatchSource + ?Sized>(source: &S) -> Census {
+    fn new<S: PatchSource + ?Sized>(source: &S, transforms: &[DAffine3]) -> Census {
         let mut census = Census {
             patches: source.count(),
             regular: 0,
@@ -227,7 +254,8 @@ impl Census {
             eigenvalues: 0,
         };
         let mut eigenvalues = HashSet::new();
-        for patch in 0..source.count() {
+        let is_own = |patch: &usize| transforms.is_empty() || source.instance(*patch).is_none();
+        for patch in (0..source.count()).filter(is_own) {
             match (source.storage(patch), source.class(patch)) {
                 (Storage::Regular, _) => census.regular += 1,
                 (Storage::Gregory, _) => census.gregory += 1,

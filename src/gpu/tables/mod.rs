@@ -11,8 +11,9 @@
 //! and a matrix of the class ([`TableLayout`], `basis.rs`).
 //!
 //! # Practice
-//! One texture of points: matrices of the classes, then the patches in order, 192 B a regular one. What a texel means is
-//! described in `shaders/shared/tables.wgsl`. Tables are built and handed over some 16 MiB at a time. Everything is divided
+//! One texture of points: what moves instances, matrices of the classes, then the patches in order, 192 B a regular one. A patch
+//! that is another one in another place has a record of its own (16 B), and no points. What a texel means is described in
+//! `shaders/shared/tables.wgsl`. Tables are built and handed over some 16 MiB at a time. Everything is divided
 //! by [`Tables::unit`], a power of two near the size of the object, so that models in microns and in kilometres use the
 //! same part of f32. What exceeds [`BUDGET`] or the adapter is built for the patches that a picture sees (`part.rs`).
 
@@ -108,10 +109,13 @@ impl Tables {
 
     /// What the passes that read them are compiled for.
     pub(super) fn content(&self) -> Content {
+        let has_instances = !self.plan.transforms.is_empty();
         match self.plan.layout {
             _ if self.plan.has_triangles => Content::Triangles,
             _ if self.plan.has_gregory => Content::Gregory,
+            TableLayout::Expanded if has_instances => Content::Instances,
             TableLayout::Expanded => Content::Points,
+            _ if has_instances => Content::InstancesWithTails,
             _ => Content::Tails,
         }
     }

@@ -1,13 +1,13 @@
 //! Fills the textures.
 
 use super::basis::Basis;
-use super::layout::Plan;
+use super::layout::{Plan, TRANSFORM_TEXELS};
 use super::{PatchNet, PatchSource, TABLE_LEVELS, TableNet};
 use crate::adaptive::Gregory;
 use crate::gpu::GpuError;
 use crate::gpu::device::Device;
 use crate::gpu::shader::{KIND_GREGORY, KIND_IRREGULAR, KIND_REGULAR, SCALE_LEVELS};
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
 use std::collections::HashMap;
 
@@ -43,7 +43,12 @@ pub(super) fn pack<S: PatchSource + ?Sized>(
 ) -> Result<Packed, GpuError> {
     let format = wgpu::TextureFormat::Rgba32Float;
     let mut writer = device.block_table("the points of the patches", plan.texels, format)?;
-    let mut next = 0;
+    let mut next = plan.transforms.len() * TRANSFORM_TEXELS;
+    if next > 0 {
+        place_transforms(&plan.transforms, writer.room(next));
+        writer.flush();
+    }
+    let instance = |patch: usize| (!plan.transforms.is_empty()).then(|| source.instance(patch)).flatten();
     let mut matrices = Vec::with_capacity(plan.bases.len());
     for class in 0..plan.bases.len() {
         let size = plan.matrix_texels(class);
@@ -62,8 +67,13 @@ pub(super) fn pack<S: PatchSource + ?Sized>(
     while records.len() < count {
         let mut jobs: Vec<(usize, usize, usize)> = Vec::new();
         let start = next;
-        while records.len() + jobs.len() < count && next - start < BATCH {
-            let patch = records.len() + jobs.len();
+        let mut end = records.len();
+        while end < count && next - start < BATCH {
+            let patch = end;
+            end += 1;
+            if instance(patch).is_some() {
+                continue;
+            }
             let size = plan.patch_texels(source.storage(patch), source.class(patch));
             jobs.push((patch, next, size));
             next += size;
@@ -86,11 +96,19 @@ pub(super) fn pack<S: PatchSource + ?Sized>(
         };
         let placed: Vec<Placed> = slots.into_par_iter().map(place).collect();
         writer.flush();
-        for mut p in placed {
-            p.record[2] = p.lambda.map_or(0, |lambda| scales.first(lambda));
-            records.push(p.record);
-            origins.push(p.origin);
-            cells.push(p.cell);
+        let mut placed = placed.into_iter();
+        for patch in records.len()..end {
+            if let Some((original, transform)) = instance(patch) {
+                let [first, kind, scale, matrix]: [u32; 4] = records[original];
+                records.push([first, kind, scale | (transform as u32 + 1) << 16, matrix]);
+                origins.push(plan.transforms[transform].transform_point3(origins[original]));
+                cells.push(cells[original]);
+            } else if let Some(mut p) = placed.next() {
+                p.record[2] = p.lambda.map_or(0, |lambda| scales.first(lambda));
+                records.push(p.record);
+                origins.push(p.origin);
+                cells.push(p.cell);
+            }
         }
     }
     Ok(Packed { points: writer.finish()?, records, scales: scales.texels, origins, cells })
@@ -111,6 +129,14 @@ impl Scales {
             self.texels.extend((0..SCALE_LEVELS as i32).map(scale));
             first
         })
+    }
+}
+
+/// The columns of the matrices, three texels each; translations are in the origins of patches.
+fn place_transforms(transforms: &[DAffine3], texels: &mut [[f32; 4]]) {
+    let columns = transforms.iter().flat_map(|transform| transform.matrix3.to_cols_array_2d());
+    for (texel, [x, y, z]) in texels.iter_mut().zip(columns) {
+        *texel = [x as f32, y as f32, z as f32, 0.0];
     }
 }
 

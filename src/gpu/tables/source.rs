@@ -3,7 +3,7 @@
 use crate::adaptive::{AdaptivePatches, Gregory};
 use crate::osd::FarNet;
 use crate::stam::{ClassTable, LOOP_WINDOW, LimitSurface, Net, Rings, WINDOW_POINTS, box_spline};
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use std::fmt::Debug;
 use std::sync::Arc;
 
@@ -91,6 +91,16 @@ pub trait PatchSource: Debug + Send + Sync {
     fn classes(&self) -> &[ClassTable];
     /// Index into [`classes`](Self::classes) of an irregular patch.
     fn class(&self, patch: usize) -> Option<usize>;
+    /// Of a patch that is an earlier one in another place: that one, and which of [`transforms`](Self::transforms) moves it.
+    fn instance(&self, _patch: usize) -> Option<(usize, usize)> {
+        None
+    }
+
+    /// What moves patches to where their instances are.
+    fn transforms(&self) -> Vec<DAffine3> {
+        Vec::new()
+    }
+
     /// A patch with so many levels, if it has as many.
     fn patch(&self, patch: usize, levels: usize) -> PatchNet;
     /// Some point near a patch, and its cell: refinement levels and transition bits, as in [`PatchNet`].
@@ -135,6 +145,15 @@ impl PatchSource for LimitSurface {
 
     fn class(&self, patch: usize) -> Option<usize> {
         self.class(patch).filter(|_| !self.has_triangles())
+    }
+
+    fn instance(&self, patch: usize) -> Option<(usize, usize)> {
+        self.instance(patch)
+    }
+
+    fn transforms(&self) -> Vec<DAffine3> {
+        // The shader of triangles does not move them, so each has points of its own.
+        if self.has_triangles() { Vec::new() } else { self.transforms() }
     }
 
     fn patch(&self, patch: usize, levels: usize) -> PatchNet {

@@ -9,6 +9,7 @@
 //! Schema: `UsdGeomMesh`, `UsdGeomImageable` and `UsdGeomXformable` of OpenUSD.
 
 mod circles;
+mod instancer;
 mod instances;
 mod nesting;
 mod open;
@@ -56,6 +57,8 @@ struct Found {
     empty: Option<(sdf::Path, DMat4)>,
     /// Those that are shown, whether they were asked for or not.
     shown: Vec<String>,
+    /// The PointInstancer that came last.
+    instancer: Option<sdf::Path>,
     /// The first one that a skeleton or blend shapes would move, and their number.
     posed: Option<(String, usize)>,
 }
@@ -122,15 +125,18 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    /// Reads the prim's own part of the state, and the mesh if it is one that is shown. Parents come before children.
+    /// Reads the prim's own part of the state, and what it is if that is shown. Parents come before children.
     fn visit(
         &self,
         path: &sdf::Path,
         states: &mut HashMap<sdf::Path, State>,
         found: &mut Found,
     ) -> Result<(), MeshError> {
+        if found.instancer.as_ref().is_some_and(|instancer| path.has_prefix(instancer)) {
+            return Ok(());
+        }
         let inherited = path.parent().and_then(|parent| states.get(&parent));
-        let mut state = inherited.cloned().unwrap_or(State {
+        let state = inherited.cloned().unwrap_or(State {
             world: DMat4::IDENTITY,
             visible: true,
             purpose: "default".to_owned(),
@@ -138,15 +144,7 @@ impl Reader<'_> {
         let source = self.source(path);
         let (prim, kind) = self.prim(path, &source)?;
         let node = self.node(&prim, &source);
-        // A prim without a type is not imageable: it hands on what it got. A scope has no transform.
-        if !kind.is_empty() {
-            state.visible &= node.token("visibility")?.as_deref() != Some("invisible");
-            state.purpose = node.token("purpose")?.unwrap_or(state.purpose);
-        }
-        if !matches!(kind.as_str(), "" | "Scope") {
-            let local = xform::local(&node)?;
-            state.world = if local.resets { local.matrix } else { state.world * local.matrix };
-        }
+        let state = self.handed_down(&node, &kind, state)?;
         let name = path.to_string();
         match kind.as_str() {
             "Mesh" if state.is_shown() => {
@@ -157,19 +155,36 @@ impl Reader<'_> {
                         if prim::is_posed(&node)? {
                             found.posed.get_or_insert_with(|| (name.clone(), 0)).1 += 1;
                         }
-                        let (mesh, digest) = prim::read(&node, state.world)?;
-                        found.meshes.push(Placed { name: name.clone(), mesh, world: state.world, digest });
+                        found.meshes.push(prim::read(&node)?.place(name.clone(), state.world)?);
                     }
                 }
                 found.shown.push(name);
             }
-            "PointInstancer" if state.is_shown() && self.choice.takes(&name) => {
-                return Err(MeshError::InstancerUnsupported { at: node.place() });
+            "PointInstancer" => {
+                if state.is_shown() {
+                    self.instances(&node, &name, &state, found)?;
+                }
+                // What is below is there to be instanced.
+                found.instancer = Some(path.clone());
             }
             _ => {}
         }
         states.insert(path.clone(), state);
         Ok(())
+    }
+
+    /// What a prim of a type hands down of what it got.
+    fn handed_down(&self, node: &Node<'_>, kind: &str, mut state: State) -> Result<State, MeshError> {
+        // A prim without a type is not imageable: it hands on what it got. A scope has no transform.
+        if !kind.is_empty() {
+            state.visible &= node.token("visibility")?.as_deref() != Some("invisible");
+            state.purpose = node.token("purpose")?.unwrap_or(state.purpose);
+        }
+        if !matches!(kind, "" | "Scope") {
+            let local = xform::local(node)?;
+            state.world = if local.resets { local.matrix } else { state.world * local.matrix };
+        }
+        Ok(state)
     }
 
     fn node<'n>(&self, prim: &'n Prim, source: &'n str) -> Node<'n> {
@@ -210,7 +225,7 @@ impl Reader<'_> {
             Some((path, world)) if found.meshes.is_empty() => {
                 let source = self.source(path);
                 let (prim, _) = self.prim(path, &source)?;
-                prim::read(&self.node(&prim, &source), *world).map(drop)
+                prim::read(&self.node(&prim, &source))?.place(String::new(), *world).map(drop)
             }
             _ => Ok(()),
         }
@@ -222,7 +237,8 @@ impl Choice {
     fn takes(&self, name: &str) -> bool {
         let above = |prim: &String| {
             let prim = prim.trim_end_matches('/');
-            name.strip_prefix(prim).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
+            // Instances of a PointInstancer are called /Path/To[12].
+            name.strip_prefix(prim).is_some_and(|rest| rest.is_empty() || rest.starts_with(['/', '[']))
         };
         self.prims.is_empty() || self.prims.iter().any(above)
     }

@@ -3,6 +3,7 @@
 use glam::{DMat4, DVec3};
 
 use super::instances;
+use super::scene::Placed;
 use super::value::Node;
 use crate::mesh::validate::{Source, check};
 use crate::mesh::{Boundary, Corner, Crease, MeshError, Scheme, SubdivMesh};
@@ -18,18 +19,21 @@ pub(super) fn is_posed(node: &Node<'_>) -> Result<bool, MeshError> {
     Ok(node.has_value("primvars:skel:jointIndices")? || node.has_value("skel:blendShapes")?)
 }
 
-/// Reads and validates the mesh, with its points where `world` puts them; the other result is its digest before that.
-pub(super) fn read(node: &Node<'_>, world: DMat4) -> Result<(SubdivMesh, u64), MeshError> {
-    let points = node.required("points", node.points("points")?)?;
-    let face_sizes = node.required("faceVertexCounts", node.indices("faceVertexCounts")?)?;
-    let face_vertices = node.required("faceVertexIndices", node.indices("faceVertexIndices")?)?;
-    // What is not finite stays what it is, for the message.
-    let place = |point: DVec3| if point.is_finite() { world.project_point3(point) } else { point };
-    let mut mesh = SubdivMesh {
+/// A mesh before its transform.
+#[derive(Clone)]
+pub(super) struct Unplaced {
+    /// With its points as they are in the file.
+    mesh: SubdivMesh,
+    is_left_handed: bool,
+}
+
+/// Reads the mesh. What is wrong with faces and points shows when it is placed.
+pub(super) fn read(node: &Node<'_>) -> Result<Unplaced, MeshError> {
+    let mesh = SubdivMesh {
         name: node.source.to_owned(),
-        points: points.iter().copied().map(place).collect(),
-        face_sizes,
-        face_vertices,
+        points: node.required("points", node.points("points")?)?,
+        face_sizes: node.required("faceVertexCounts", node.indices("faceVertexCounts")?)?,
+        face_vertices: node.required("faceVertexIndices", node.indices("faceVertexIndices")?)?,
         creases: creases(node)?,
         corners: corners(node)?,
         holes: node.indices("holeIndices")?.unwrap_or_default(),
@@ -37,14 +41,30 @@ pub(super) fn read(node: &Node<'_>, world: DMat4) -> Result<(SubdivMesh, u64), M
         boundary: boundary(node)?,
         ..SubdivMesh::default()
     };
-    check(&mesh, &Source { name: node.source, lines: None, first_vertex: 0 })?;
     triangle_rule(node, &mesh)?;
-    // A transform that mirrors turns the inside out once more.
-    if is_left_handed(node)? != (world.determinant() < 0.0) {
-        turn(&mut mesh);
+    Ok(Unplaced { mesh, is_left_handed: is_left_handed(node)? })
+}
+
+impl Unplaced {
+    pub(super) fn vertex_count(&self) -> usize {
+        self.mesh.points.len()
     }
-    let digest = instances::digest(&mesh, &points);
-    Ok((mesh, digest))
+
+    /// Validates the mesh with its points where `world` puts them; `name` is the path of the prim.
+    pub(super) fn place(self, name: String, world: DMat4) -> Result<Placed, MeshError> {
+        let Self { mut mesh, is_left_handed } = self;
+        // What is not finite stays what it is, for the message.
+        let place = |point: &DVec3| if point.is_finite() { world.project_point3(*point) } else { *point };
+        let moved = mesh.points.iter().map(place).collect();
+        let local = std::mem::replace(&mut mesh.points, moved);
+        check(&mesh, &Source { name: &mesh.name, lines: None, first_vertex: 0 })?;
+        // A transform that mirrors turns the inside out once more.
+        if is_left_handed != (world.determinant() < 0.0) {
+            turn(&mut mesh);
+        }
+        let digest = instances::digest(&mesh, &local);
+        Ok(Placed { name, mesh, world, digest })
+    }
 }
 
 fn scheme(node: &Node<'_>) -> Result<Scheme, MeshError> {

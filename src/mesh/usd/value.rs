@@ -1,7 +1,7 @@
 //! Attributes of a prim as the types that a mesh needs.
 
 use glam::DVec3;
-use openusd::sdf::Value;
+use openusd::sdf::{Path, Value};
 use openusd::usd::{Prim, TimeCode};
 
 use crate::mesh::MeshError;
@@ -89,6 +89,33 @@ impl Node<'_> {
             Some(Value::FloatVec(values)) => Ok(values),
             Some(_) => Err(self.wrong_type(name, "float[]")),
         }
+    }
+
+    pub(super) fn longs(&self, name: &'static str) -> Result<Option<Vec<i64>>, MeshError> {
+        match self.value(name)? {
+            None => Ok(None),
+            Some(Value::Int64Vec(values)) => Ok(Some(values)),
+            Some(_) => Err(self.wrong_type(name, "int64[]")),
+        }
+    }
+
+    /// Quaternions in whichever precision they have, the real part first.
+    pub(super) fn quaternions(&self, name: &'static str) -> Result<Option<Vec<[f64; 4]>>, MeshError> {
+        Ok(Some(match self.value(name)? {
+            None => return Ok(None),
+            Some(Value::QuathVec(values)) => {
+                values.into_iter().map(|q| [q.w.into(), q.x.into(), q.y.into(), q.z.into()]).collect()
+            }
+            Some(Value::QuatfVec(values)) => {
+                values.into_iter().map(|q| [q.w.into(), q.x.into(), q.y.into(), q.z.into()]).collect()
+            }
+            Some(_) => return Err(self.wrong_type(name, "quath[]")),
+        }))
+    }
+
+    /// Prims that a relationship leads to.
+    pub(super) fn targets(&self, name: &'static str) -> Result<Vec<Path>, MeshError> {
+        self.prim.relationship(name).forwarded_targets().map_err(|error| self.unreadable(name, &error))
     }
 
     /// Points in whichever precision they have.

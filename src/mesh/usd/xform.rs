@@ -70,7 +70,7 @@ fn operation(node: &Node<'_>, op: &str) -> Result<DMat4, MeshError> {
     Ok(if inverted { matrix.inverse() } else { matrix })
 }
 
-fn scaling(factors: DVec3) -> DMat4 {
+pub(super) fn scaling(factors: DVec3) -> DMat4 {
     // Not from_scale, which does not take zeros in debug builds.
     DMat4::from_diagonal(factors.extend(1.0))
 }
