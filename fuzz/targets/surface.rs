@@ -5,7 +5,9 @@ use super::draft::{Draft, Input};
 use arbitrary::Unstructured;
 use catoptric::adaptive::AdaptivePatches;
 use catoptric::mesh::{Scheme, SubdivMesh};
-use catoptric::osd::{Bfr, EndCap, Far, Isolation, LimitStencils, Reference};
+use catoptric::osd::{
+    Answer, Bfr, EndCap, Far, INFINITE_SHARPNESS, Isolation, LimitStencils, Location, Reference, ReferenceJet,
+};
 use catoptric::patch::PatchError;
 use catoptric::stam::{LimitSurface, Net};
 use glam::DVec3;
@@ -92,11 +94,30 @@ fn check_evaluation(surface: &LimitSurface, mesh: &SubdivMesh) {
     }
 }
 
+/// Whether no finite sharpness is left at the isolation of the references.
+fn is_resolved(mesh: &SubdivMesh) -> bool {
+    let sharpness = mesh.creases.iter().map(|c| c.sharpness).chain(mesh.corners.iter().map(|c| c.sharpness));
+    sharpness.into_iter().all(|sharpness| sharpness <= ISOLATION as f32 || sharpness >= INFINITE_SHARPNESS)
+}
+
+/// Where OpenSubdiv's own patch is a B-spline, it is at the same place.
+fn check_positions(mesh: &SubdivMesh, surface: &LimitSurface, samples: &[Location], answers: &[ReferenceJet]) {
+    let size = mesh.points.iter().fold(0.0, |size: f64, p| size.max(p.abs().max_element()));
+    for (&(ptex, u, v), answer) in samples.iter().zip(answers).filter(|(_, jet)| jet.answer == Answer::Regular) {
+        let (_, jet) = surface.evaluate_ptex(ptex, [u, v]).expect("no hole");
+        let off = jet.position.distance(answer.position);
+        assert!(off <= 1e-12 * size, "face {ptex} at {u},{v}: {} and {}\n{mesh:?}", jet.position, answer.position);
+    }
+}
+
 /// OpenSubdiv's evaluators survive, and answer with numbers.
 fn check_references(mesh: &SubdivMesh, surface: &LimitSurface) {
     let faces = 0..surface.ptex_count() as u32;
     let samples: Vec<_> = faces.flat_map(|face| places(surface).map(move |[u, v]| (face, u, v))).collect();
     let mut answers = Far::new(mesh, ISOLATION).and_then(|far| far.evaluate(&samples)).expect("Far");
+    if mesh.scheme == Scheme::CatmullClark && is_resolved(mesh) {
+        check_positions(mesh, surface, &samples, &answers);
+    }
     answers.extend(LimitStencils::new(mesh, ISOLATION).and_then(|s| s.evaluate(&samples)).expect("limit stencils"));
     answers.extend(Bfr::new(mesh, (2, ISOLATION)).and_then(|mut bfr| bfr.evaluate(&samples)).expect("Bfr"));
     assert!(answers.iter().all(|jet| jet.position.is_finite()), "{mesh:?}");

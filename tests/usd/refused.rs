@@ -1,6 +1,6 @@
 //! What is refused, each case with its message.
 
-use crate::{HOUSE, SQUARE, prim, refusal};
+use crate::{HOUSE, SQUARE, accepted, prim, refusal};
 
 fn with(more: &str) -> String {
     refusal(&prim("m", &format!("{SQUARE}{more}")))
@@ -170,4 +170,24 @@ fn scenes_that_have_no_mesh_or_not_all_of_it() {
         "{}",
         refusal(&none)
     );
+}
+
+/// Prims that are composed of themselves, through any arcs and prims above: openusd would not come back from them.
+#[test]
+fn arcs_that_lead_back() {
+    let mesh = |name: &str, arcs: &str, more: &str| format!("def Mesh \"{name}\" ({arcs})\n{{\n{SQUARE}\n{more}}}\n");
+    for text in [
+        mesh("a", "inherits = </a>", ""),
+        mesh("a", "inherits = </b>", "") + &mesh("b", "specializes = </a>", ""),
+        mesh("a", "inherits = </a/b>", &mesh("b", "", "")),
+        mesh("a", "", &mesh("b", "inherits = </a>", "")),
+        mesh("a", "payload = @./mesh.usda@</b>", "") + &mesh("b", "", &mesh("c", "references = </a>", "")),
+        mesh("a", "inherits = </b>", "") + &mesh("b", "", &mesh("c", "specializes = </a/c>", "")),
+    ] {
+        let message = refusal(&text);
+        assert!(message.contains(" lead back to it; break the circle of its inherits"), "{text}{message}");
+    }
+    // Names that come back in another place are none of this.
+    let fine = mesh("a", "inherits = </b>", &mesh("c", "references = </b/d>", ""));
+    accepted(&(fine + &mesh("b", "", &mesh("d", "specializes = </e>", "")) + &mesh("e", "", "")));
 }

@@ -8,6 +8,11 @@ use openusd::ar::{DefaultResolver, ResolvedPath, Resolver};
 use openusd::sdf::{AbstractData, Path, Value};
 use std::collections::HashMap;
 
+use super::open::DEEPEST;
+
+/// Most prims that are followed through the arcs of those above them, beside ten for each that arcs name.
+const MOST_FOLLOWED: usize = 100_000;
+
 /// A prim of a layer; the root layer and its sublayers are one, number 0.
 type Place = (usize, Path);
 
@@ -83,53 +88,89 @@ impl Arcs {
     /// Where one of these arcs starts that is within a circle: with edges down from each prim in its own layer, or with edges up, all
     /// layers one.
     fn within_circle(&self, down: bool, counts: impl Fn(&Arc) -> bool) -> Option<&Path> {
-        let mut graph = Graph::default();
-        let mut node = |(layer, path): &Place| {
+        let place = |(layer, path): &Place| {
             let path = if path.is_abs_root() { self.default_prims.get(layer)? } else { path };
-            Some(graph.node((if down { *layer } else { 0 }, path.clone()), down))
+            Some((if down { *layer } else { 0 }, path.clone()))
         };
-        let ends: Vec<_> = self.arcs.iter().map(|arc| Some([node(&arc.from)?, node(&arc.to)?])).collect();
-        graph.edges.extend(ends.iter().flatten());
+        let ends = self.arcs.iter().map(|arc| Some((arc, [place(&arc.from)?, place(&arc.to)?])));
+        let ends: Vec<_> = ends.flatten().collect();
+        let mut graph = Graph { down, ..Graph::default() };
+        let mut arcs: HashMap<&Place, Vec<&Place>> = HashMap::new();
+        let mut nodes = Vec::new();
+        for (_, [from, to]) in &ends {
+            arcs.entry(from).or_default().push(to);
+            nodes.push([graph.node(from), graph.node(to)]);
+        }
+        graph.edges.extend(&nodes);
+        graph.follow(&arcs);
         let component = graph.components();
-        let is_closed = |ends: &Option<[usize; 2]>| ends.is_some_and(|[from, to]| component[from] == component[to]);
-        self.arcs.iter().zip(&ends).find(|(arc, ends)| counts(arc) && is_closed(ends)).map(|(arc, _)| &arc.from.1)
+        let mut closed = ends.iter().zip(&nodes).filter(|(_, [from, to])| component[*from] == component[*to]);
+        closed.find(|((arc, _), _)| counts(arc)).map(|((arc, _), _)| &arc.from.1)
     }
 }
 
 #[derive(Default)]
 struct Graph {
+    places: Vec<Place>,
     nodes: HashMap<Place, usize>,
     edges: Vec<[usize; 2]>,
+    /// Whether edges lead from prims to those below them, or the other way.
+    down: bool,
 }
 
 impl Graph {
+    fn insert(&mut self, place: Place) -> usize {
+        let node = self.places.len();
+        self.places.push(place.clone());
+        self.nodes.insert(place, node);
+        node
+    }
+
     /// The node of a prim; a new one is joined to its parent.
-    fn node(&mut self, place: Place, down: bool) -> usize {
-        if let Some(&node) = self.nodes.get(&place) {
+    fn node(&mut self, place: &Place) -> usize {
+        if let Some(&node) = self.nodes.get(place) {
             return node;
         }
-        let first = self.nodes.len();
-        let (layer, mut path) = place;
-        let mut node = first;
-        self.nodes.insert((layer, path.clone()), node);
-        while let Some(parent) = path.parent().filter(|parent| !parent.is_abs_root()) {
-            let next = self.nodes.len();
-            let known = self.nodes.get(&(layer, parent.clone())).copied();
-            let above = known.unwrap_or(next);
-            self.edges.push(if down { [above, node] } else { [node, above] });
+        let first = self.insert(place.clone());
+        let (mut node, mut parent) = (first, place.1.parent());
+        while let Some(path) = parent.filter(|path| !path.is_abs_root()) {
+            parent = path.parent();
+            let above = (place.0, path);
+            let known = self.nodes.get(&above).copied();
+            let above = known.unwrap_or_else(|| self.insert(above));
+            self.edges.push(if self.down { [above, node] } else { [node, above] });
             if known.is_some() {
                 break;
             }
-            self.nodes.insert((layer, parent.clone()), above);
-            (path, node) = (parent, above);
+            node = above;
         }
         first
+    }
+
+    /// Adds what arcs of prims above bring: where `/a` refers to `/b`, `/a/c` is made of `/b/c`.
+    fn follow(&mut self, arcs: &HashMap<&Place, Vec<&Place>>) {
+        // Prims that grow without end are a circle, which the first of them shows.
+        let most = MOST_FOLLOWED + 10 * self.places.len();
+        let mut next = 0;
+        while next < self.places.len().min(most) {
+            let (layer, path) = self.places[next].clone();
+            for above in path.strict_ancestors_below_root() {
+                let above = (layer, above);
+                for to in arcs.get(&above).into_iter().flatten() {
+                    if let Some(prim) = path.replace_prefix(&above.1, &to.1).filter(|p| p.element_count() <= DEEPEST) {
+                        let node = self.node(&(to.0, prim));
+                        self.edges.push([next, node]);
+                    }
+                }
+            }
+            next += 1;
+        }
     }
 
     /// For each node a number, which those have in common that lead to one another (Kosaraju's algorithm, without recursion).
     fn components(&self) -> Vec<usize> {
         const NONE: usize = usize::MAX;
-        let count = self.nodes.len();
+        let count = self.places.len();
         let (mut out, mut back) = (vec![Vec::new(); count], vec![Vec::new(); count]);
         for &[from, to] in &self.edges {
             out[from].push(to);

@@ -17,7 +17,7 @@ use crate::mesh::MeshError;
 use crate::mesh::error::{Place, Spot, quote};
 
 /// Most prims one below the other, and most braces, brackets and parentheses that are open at a time.
-const DEEPEST: usize = 200;
+pub(super) const DEEPEST: usize = 200;
 
 /// Opens the stage of a file; `file` is its name in messages.
 pub(super) fn open(path: &str, file: &str) -> Result<Stage, MeshError> {
