@@ -8,6 +8,7 @@ use super::{Subject, VerifyError};
 use crate::osd::{Answer, Location, MAX_ISOLATION, ReferenceJet};
 use crate::patch::PatchKind;
 use crate::stam::Jet;
+use std::collections::{HashMap, HashSet};
 
 /// Ten levels of refinement, each summed anew on both sides: ten times tier `vertex`. Rounding of world coordinates comes
 /// on top ([`Rounding`](super::rounding::Rounding)).
@@ -57,15 +58,47 @@ pub(super) fn run(subject: &Subject<'_>, references: &References, bins: &mut Bin
         (false, size) => vec![&quadrant; size as usize],
     };
     let grids: Vec<_> = subject.mesh.face_sizes.iter().flat_map(grids_of).collect();
+    let not_manifold = not_manifold(subject);
     let faces = subject.faces(quad.len(), BUDGET);
     let samples: Vec<Location> =
         faces.flat_map(|face| grids[face as usize].iter().map(move |&[u, v]| (face, u, v))).collect();
     let answers = references.far.evaluate(&samples)?;
-    compare(subject, Against::Far, &samples, &subject.evaluate_all(&samples), &answers, bins);
+    let is_known_wrong = |sample: &Location| not_manifold.contains(&(sample.0, [sample.1, sample.2].map(f64::to_bits)));
+    compare(subject, Against::Far, &samples, &subject.evaluate_all(&samples), &answers, is_known_wrong, bins);
     let samples = thinned(&samples);
     let answers = references.stencils.evaluate(&samples)?;
-    compare(subject, Against::LimitStencils, &samples, &subject.evaluate_all(&samples), &answers, bins);
+    compare(subject, Against::LimitStencils, &samples, &subject.evaluate_all(&samples), &answers, is_known_wrong, bins);
     Ok(())
+}
+
+/// Ptex faces and parameters, as bits, of the control vertices at an edge of more than two faces. OpenSubdiv keeps them where they are,
+/// as corners, and its limit masks say so; but its patches there can be those along a crease, a sixth of an edge of the last level off.
+fn not_manifold(subject: &Subject<'_>) -> HashSet<(u32, [u64; 2])> {
+    let mut faces_at: HashMap<[u32; 2], u32> = HashMap::new();
+    let edges = |face: &[u32]| (0..face.len()).map(|k| [face[k], face[(k + 1) % face.len()]]).collect::<Vec<_>>();
+    for [a, b] in subject.mesh.faces().flat_map(|(_, face)| edges(face)) {
+        *faces_at.entry([a.min(b), a.max(b)]).or_default() += 1;
+    }
+    let many = faces_at.into_iter().filter(|&(_, faces)| faces > 2).flat_map(|(edge, _)| edge);
+    let vertices: HashSet<u32> = many.collect();
+    let mut out = HashSet::new();
+    if vertices.is_empty() {
+        return out;
+    }
+    let mut ptex = 0;
+    let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|uv| uv.map(f64::to_bits));
+    for (_, face) in subject.mesh.faces() {
+        let triangles = subject.surface.has_triangles();
+        for (k, _) in face.iter().enumerate().filter(|(_, vertex)| vertices.contains(vertex)) {
+            out.insert(match (triangles, face.len()) {
+                (true, _) => (ptex, corners[[0, 1, 3][k]]),
+                (false, 4) => (ptex, corners[k]),
+                (false, _) => (ptex + k as u32, corners[0]),
+            });
+        }
+        ptex += if triangles || face.len() == 4 { 1 } else { face.len() as u32 };
+    }
+    out
 }
 
 fn compare(
@@ -74,6 +107,7 @@ fn compare(
     samples: &[Location],
     ours: &[Option<(usize, Jet)>],
     answers: &[ReferenceJet],
+    is_known_wrong: impl Fn(&Location) -> bool + Sync,
     bins: &mut Bins,
 ) {
     bins.fill(samples.len(), |bins, i| {
@@ -95,6 +129,12 @@ fn compare(
         if kind == Some(PatchKind::Dart) && !exact {
             key.known_wrong = Some("end cap at infinitely sharp darts");
             difference.position = Check { allowed: KNOWN_WRONG, ..difference.position };
+        }
+        if is_known_wrong(&samples[i]) {
+            key.known_wrong = Some("patches at vertices that are not manifold");
+            difference.position = Check { allowed: KNOWN_WRONG, ..difference.position };
+            difference.normal = Normal::Unknown;
+            difference.derivative = None;
         }
         if !exact {
             difference.normal = Normal::Unknown;
