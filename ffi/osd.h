@@ -110,7 +110,7 @@ osd_status osd_refiner_limit(const osd_refiner *refiner, const double *points, d
 
 /*
  * What answered: nothing (a hole), an exact B-spline patch, an approximating end cap; or the reference was not asked,
- * because 3.5.0 reads out of bounds there (Bfr, faces with an interior vertex of valence 2).
+ * because 3.5.0 reads out of bounds there (Bfr, faces with a vertex where two faces share two edges, as at interior valence 2).
  */
 typedef enum osd_answer {
     OSD_ANSWER_NONE,

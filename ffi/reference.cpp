@@ -41,14 +41,25 @@ struct osd_bfr {
     };
     std::vector<Ptex> ptex;
 
-    // Bfr's IrregularPatchBuilder loses track of the overlapping faces round an interior vertex of valence 2: it reads
-    // beyond its arrays, and sometimes crashes.
+    // Bfr's IrregularPatchBuilder loses track of faces that overlap round a vertex, two that share both their edges there (an interior
+    // vertex of valence 2, or a part of one that is not manifold): it reads beyond its arrays, and sometimes crashes.
     bool is_safe(int index) const {
+        auto const vertices = refiner->GetLevel(0).GetFaceVertices(index);
+        return std::none_of(vertices.begin(), vertices.end(), [&](int v) { return has_overlap(v); });
+    }
+
+    bool has_overlap(int vertex) const {
         Far::TopologyLevel const level = refiner->GetLevel(0);
-        auto const vertices = level.GetFaceVertices(index);
-        return std::none_of(vertices.begin(), vertices.end(), [&](int v) {
-            return !level.IsVertexBoundary(v) && level.GetVertexFaces(v).size() == 2;
-        });
+        auto const faces = level.GetVertexFaces(vertex);
+        auto const places = level.GetVertexFaceLocalIndices(vertex);
+        std::vector<std::pair<int, int>> sides;
+        for (int i = 0; i < faces.size(); ++i) {
+            auto const edges = level.GetFaceEdges(faces[i]);
+            int const next = edges[places[i]], last = edges[(places[i] + edges.size() - 1) % edges.size()];
+            sides.emplace_back(std::min(next, last), std::max(next, last));
+        }
+        std::sort(sides.begin(), sides.end());
+        return std::adjacent_find(sides.begin(), sides.end()) != sides.end();
     }
 
     // The surface of the last face asked for: samples come grouped by face.
