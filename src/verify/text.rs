@@ -76,7 +76,10 @@ impl MeshReport {
         }
         if self.reference_not_asked > 0 {
             let count = self.reference_not_asked;
-            writeln!(f, "  Bfr: {count} samples not asked: it reads out of bounds where two faces share two edges at a vertex")?;
+            writeln!(
+                f,
+                "  Bfr: {count} samples not asked: it reads out of bounds where two faces share two edges at a vertex"
+            )?;
         }
         if self.patches_unjudged > 0 {
             let count = counted(self.patches_unjudged, "patch is", "patches are");
