@@ -9,6 +9,9 @@ use crate::fixtures::{
     assert_attributes, assert_same_surface, distance, expected, folder, read_obj, read_prim, samples,
 };
 
+/// The prim over all that Blender writes.
+const BLENDER_ROOT: &str = "root";
+
 fn file(extension: &str) -> Option<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/meshes/blender");
     let path = folder.join("suzanne_and_cube").with_extension(extension);
@@ -62,7 +65,8 @@ fn assert_as_usd_core(path: &Path, name: &str, count: usize) {
     let stage = expected(name);
     assert_eq!(stage.times[0].meshes.len(), count);
     for prim in &stage.times[0].meshes {
-        let ours = read_prim(path, &prim.prim);
+        // Expected prims are named below the one that Blender puts over all.
+        let ours = read_prim(path, &format!("/{BLENDER_ROOT}{}", prim.prim));
         assert_attributes(&ours, prim, &prim.prim);
         let points = distance(&ours, &prim.world());
         assert!(points <= 1e-14, "{}: {points:e}", prim.prim);
