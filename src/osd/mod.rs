@@ -13,7 +13,7 @@ mod stencils;
 
 pub use patches::{EndCap, FarNet, FarPatch, Isolation};
 pub use reference::{Answer, Bfr, Far, Location, Reference, ReferenceJet};
-pub use refiner::{Level, Refiner, Rule};
+pub use refiner::{Level, NO_TWIN, Refiner, Rule};
 pub use stencils::{LimitStencils, Stencil};
 
 use crate::mesh::{Boundary, Creasing, MeshError, Scheme, SubdivMesh};

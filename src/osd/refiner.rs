@@ -54,9 +54,57 @@ pub struct Level {
     pub vertex_rules: Vec<Rule>,
     /// Child vertex of each vertex in the next level.
     pub vertex_children: Vec<i32>,
+    /// Face of each corner.
+    pub corner_faces: Vec<u32>,
+    /// For the edge from each corner to the next, the corner from which the face across runs along it, the other way;
+    /// [`NO_TWIN`] where there is none: at boundaries, and where edges are not manifold or faces are turned against each other.
+    pub twins: Vec<u32>,
 }
 
+/// No face lies across.
+pub const NO_TWIN: u32 = u32::MAX;
+
 impl Level {
+    /// Fills `corner_faces` and `twins`.
+    fn link(&mut self) {
+        let corners = self.face_vertices.len();
+        self.corner_faces = Vec::with_capacity(corners);
+        for (face, ends) in self.face_offsets.windows(2).enumerate() {
+            self.corner_faces.resize(ends[1] as usize, face as u32);
+        }
+        self.twins = vec![NO_TWIN; corners];
+        let mut first = vec![NO_TWIN; self.edge_faces.len()];
+        for corner in 0..corners {
+            let edge = self.face_edges[corner] as usize;
+            if self.edge_faces[edge][1] < 0 {
+                continue;
+            }
+            let other = std::mem::replace(&mut first[edge], corner as u32);
+            if other == NO_TWIN {
+                continue;
+            }
+            let ends = |corner: usize| [corner, self.next(corner)].map(|corner| self.face_vertices[corner]);
+            let ([a, b], [c, d]) = (ends(corner), ends(other as usize));
+            if a == d && b == c {
+                self.twins[corner] = other;
+                self.twins[other as usize] = corner as u32;
+            }
+        }
+    }
+
+    /// The next corner of the same face.
+    pub fn next(&self, corner: usize) -> usize {
+        let face = self.corner_faces[corner] as usize;
+        if corner + 1 == self.face_offsets[face + 1] as usize { self.face_offsets[face] as usize } else { corner + 1 }
+    }
+
+    /// The corner before it in the same face.
+    pub fn previous(&self, corner: usize) -> usize {
+        let face = self.corner_faces[corner] as usize;
+        let [start, end] = [self.face_offsets[face], self.face_offsets[face + 1]];
+        (if corner == start as usize { end as usize } else { corner }) - 1
+    }
+
     /// Number of faces.
     pub fn face_count(&self) -> usize {
         self.face_holes.len()
@@ -212,6 +260,8 @@ impl Refiner {
             vertex_sharpness: vec![0.0; vertices],
             vertex_rules: Vec::new(),
             vertex_children: vec![0; vertices],
+            corner_faces: Vec::new(),
+            twins: Vec::new(),
         };
         let mut rules = vec![0u8; vertices];
         let arrays = raw::osd_level_arrays {
@@ -230,6 +280,7 @@ impl Refiner {
         // SAFETY: every array has the size that ffi/osd.h states for it.
         check(unsafe { raw::osd_refiner_level(self.handle.as_ptr(), index, &arrays) })?;
         out.vertex_rules = rules.into_iter().map(Rule::from_raw).collect();
+        out.link();
         Ok(out)
     }
 

@@ -1,6 +1,6 @@
 //! The faces round a vertex, as far as they influence one of them.
 
-use crate::osd::{INFINITE_SHARPNESS, Level, Rule};
+use crate::osd::{INFINITE_SHARPNESS, Level, NO_TWIN, Rule};
 
 /// Faces, spokes and opposite corners round a vertex, counter-clockwise.
 ///
@@ -27,52 +27,25 @@ pub(super) struct Fan {
     pub quads: bool,
 }
 
-/// A corner of a face: its offset in the per-corner arrays of the level.
-#[derive(Clone, Copy, PartialEq, Eq)]
-struct Corner {
-    face: usize,
-    offset: usize,
-}
-
-impl Corner {
-    fn step(self, level: &Level, forward: bool) -> Self {
-        let corners = level.corners(self.face);
-        let offset = match forward {
-            true if self.offset + 1 == corners.end => corners.start,
-            true => self.offset + 1,
-            false if self.offset == corners.start => corners.end - 1,
-            false => self.offset - 1,
-        };
-        Self { offset, ..self }
+/// The same vertex in the next face counter-clockwise (across the incoming edge of the corner) or clockwise (across the outgoing
+/// edge); `None` where the edge stops influence.
+fn turn(level: &Level, corner: usize, counter_clockwise: bool, through_sharp: bool) -> Option<usize> {
+    let across = if counter_clockwise { level.previous(corner) } else { corner };
+    if !through_sharp && level.edge_sharpness[level.face_edges[across] as usize] >= INFINITE_SHARPNESS {
+        return None;
     }
-
-    /// The same vertex in the next face counter-clockwise (across the incoming edge) or clockwise (across the
-    /// outgoing edge); `None` where the edge stops influence.
-    fn turn(self, level: &Level, counter_clockwise: bool, through_sharp: bool) -> Option<Self> {
-        let corner = if counter_clockwise { self.step(level, false) } else { self };
-        let edge = level.face_edges[corner.offset] as usize;
-        if level.edge_sharpness[edge] >= INFINITE_SHARPNESS && !through_sharp {
-            return None;
-        }
-        let [a, b] = level.edge_faces[edge];
-        if b < 0 {
-            return None;
-        }
-        let face = if a as usize == self.face { b } else { a } as usize;
-        let vertex = level.face_vertices[self.offset];
-        let offset = level.corners(face).find(|&i| level.face_vertices[i] == vertex)?;
-        let next = Self { face, offset };
-        // A neighbour of the other orientation is met at the wrong edge: OpenSubdiv calls that not manifold.
-        let met = if counter_clockwise { next } else { next.step(level, false) };
-        (level.face_edges[met.offset] as usize == edge).then_some(next)
+    match level.twins[across] {
+        NO_TWIN => None,
+        twin if counter_clockwise => Some(twin as usize),
+        twin => Some(level.next(twin as usize)),
     }
 }
 
 impl Fan {
     /// The fan round corner `corner` (0-based, within the face) for `face`.
     pub fn gather(&mut self, level: &Level, face: usize, corner: usize) {
-        let own = Corner { face, offset: level.corners(face).start + corner };
-        let vertex = level.face_vertices[own.offset] as usize;
+        let own = level.corners(face).start + corner;
+        let vertex = level.face_vertices[own] as usize;
         let rule = level.vertex_rules[vertex];
         let through_sharp = rule == Rule::Dart;
         *self = Self {
@@ -90,7 +63,7 @@ impl Fan {
 
         let mut first = own;
         let mut before = 0;
-        while let Some(next) = first.turn(level, false, through_sharp) {
+        while let Some(next) = turn(level, first, false, through_sharp) {
             if next == own {
                 self.closed = true;
                 first = own;
@@ -105,14 +78,13 @@ impl Fan {
         let mut at = first;
         loop {
             self.push_spoke(level, at);
-            self.opposites.push(level.face_vertices[at.step(level, true).step(level, true).offset] as usize);
-            self.quads &= level.corners(at.face).len() == 4;
-            match at.turn(level, true, through_sharp) {
+            self.opposites.push(level.face_vertices[level.next(level.next(at))] as usize);
+            self.quads &= level.corners(level.corner_faces[at] as usize).len() == 4;
+            match turn(level, at, true, through_sharp) {
                 Some(next) if next == first => break,
                 Some(next) => at = next,
                 None => {
-                    let incoming = at.step(level, false);
-                    self.spokes.push(level.face_vertices[incoming.offset] as usize);
+                    self.spokes.push(level.face_vertices[level.previous(at)] as usize);
                     self.sharpness.push(INFINITE_SHARPNESS);
                     break;
                 }
@@ -123,9 +95,9 @@ impl Fan {
         }
     }
 
-    fn push_spoke(&mut self, level: &Level, at: Corner) {
-        self.spokes.push(level.face_vertices[at.step(level, true).offset] as usize);
-        let edge = level.face_edges[at.offset] as usize;
+    fn push_spoke(&mut self, level: &Level, at: usize) {
+        self.spokes.push(level.face_vertices[level.next(at)] as usize);
+        let edge = level.face_edges[at] as usize;
         self.sharpness.push(level.edge_sharpness[edge]);
     }
 

@@ -8,6 +8,7 @@ mod bspline;
 mod class;
 mod curvature;
 mod evaluate;
+mod evaluator;
 mod instances;
 mod loop_modes;
 mod loop_rows;
@@ -20,6 +21,7 @@ mod surface;
 
 pub use class::{ClassTable, LEVELS, WINDOW_POINTS};
 pub use curvature::Curvature;
+pub use evaluator::{Column, Columns, Evaluator, PIECE_LEVELS, Real, Results, Samples, Wanted};
 pub use loop_rows::LOOP_WINDOW;
 pub use loop_surface::{LOOP_WINDOWS, LoopWindow};
 pub use moving::{MoveError, MovingSurface};

@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use catoptric::mesh::{self, Boundary, Choice, SubdivMesh};
 use catoptric::stam::LimitSurface;
@@ -55,6 +56,20 @@ pub fn folder() -> PathBuf {
 pub fn expected(name: &str) -> Stage {
     let text = fs::read_to_string(folder().join(name).with_extension("json")).expect("a fixture");
     serde_json::from_str(&text).expect("JSON of make.py")
+}
+
+/// What usd-core reads from a file now; `None` where python3 has no usd-core.
+pub fn read_by_usd_core(path: &Path) -> Option<Stage> {
+    let python = |arguments: &[&std::ffi::OsStr]| Command::new("python3").args(arguments).output().ok();
+    let has_usd = python(&["-c".as_ref(), "import pxr, numpy".as_ref()]).is_some_and(|run| run.status.success());
+    if !has_usd {
+        println!("skipped: python3 has no usd-core (pip install usd-core numpy)");
+        return None;
+    }
+    let script = folder().join("make.py");
+    let run = python(&[script.as_ref(), "--print".as_ref(), path.as_ref()]).expect("python3 ran before");
+    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+    Some(serde_json::from_slice(&run.stdout).expect("JSON of make.py"))
 }
 
 impl Prim {
