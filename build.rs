@@ -2,10 +2,10 @@
 
 use std::{env, path::PathBuf};
 
-const SHIM: [&str; 3] = ["ffi/refiner.cpp", "ffi/reference.cpp", "ffi/stencils.cpp"];
+const SHIM: [&str; 4] = ["ffi/refiner.cpp", "ffi/reference.cpp", "ffi/stencils.cpp", "ffi/peers.cpp"];
 
 fn main() {
-    for file in SHIM.iter().chain(&["ffi/osd.h", "ffi/guard.hpp", "ffi/table.hpp", "build.rs"]) {
+    for file in SHIM.iter().chain(&["ffi/osd.h", "ffi/bfr.hpp", "ffi/guard.hpp", "ffi/table.hpp", "build.rs"]) {
         println!("cargo:rerun-if-changed={file}");
     }
     let mut shim = cc::Build::new();

@@ -194,6 +194,36 @@ osd_status osd_far_evaluate(const osd_far *far, int32_t count, const int32_t *fa
 osd_status osd_bfr_evaluate(osd_bfr *bfr, int32_t count, const int32_t *faces, const double *uv, double *jets,
                             double *cells, uint8_t *answers);
 
+/* ---- peers of benchmarks ----------------------------------------------------------------------------------------- */
+
+/*
+ * Bfr as its users have it: the surfaces of all faces with their patch points, in single or double precision. Faces that Bfr must
+ * not be asked for, and holes, have none: their jets are zero. One thread at a time.
+ */
+typedef struct osd_bfr_peer osd_bfr_peer;
+osd_status osd_bfr_peer_create(const osd_mesh *mesh, const double *points, int32_t smooth_level, int32_t sharp_level,
+                               int32_t in_double, osd_bfr_peer **out);
+void osd_bfr_peer_destroy(osd_bfr_peer *peer);
+/* uv: 2 * count, jets: 9 * count, of float or double as the peer is; faces in range. */
+osd_status osd_bfr_peer_evaluate(const osd_bfr_peer *peer, int32_t count, const int32_t *faces, const void *uv,
+                                 void *jets);
+
+/*
+ * Osd::CpuEvaluator (single precision) over an adaptive patch table with Gregory end caps, everything isolated to `isolation`, and the
+ * stencils that make its points of control points.
+ */
+typedef struct osd_cpu osd_cpu;
+osd_status osd_cpu_create(const osd_mesh *mesh, const double *points, int32_t isolation, osd_cpu **out);
+void osd_cpu_destroy(osd_cpu *cpu);
+/* points: 3 * vertices of the control mesh. */
+osd_status osd_cpu_update(osd_cpu *cpu, const float *points);
+/* Finds the patches of samples, uv: 2 * count; holes are left out. */
+osd_status osd_cpu_place(osd_cpu *cpu, int32_t count, const int32_t *faces, const float *uv);
+/* How many samples were placed. */
+osd_status osd_cpu_placed(const osd_cpu *cpu, int32_t *out);
+/* jets: 9 * count for the samples that were placed last; derivatives in an n-gon's quadrants are twice as long. */
+osd_status osd_cpu_evaluate(const osd_cpu *cpu, float *jets);
+
 #ifdef __cplusplus
 }
 #endif

@@ -1,4 +1,5 @@
 // The reference evaluators: osd_far_* (Far::PatchTable) and osd_bfr_* (Bfr surfaces).
+#include "bfr.hpp"
 #include "guard.hpp"
 #include "table.hpp"
 
@@ -36,31 +37,7 @@ struct osd_bfr {
     std::unique_ptr<Far::TopologyRefiner> refiner;
     std::unique_ptr<Factory> factory;
     std::vector<double> mesh_points;
-    struct Ptex {
-        int face, sub_face; // sub_face is -1 for a face that is one ptex face
-    };
     std::vector<Ptex> ptex;
-
-    // Bfr's IrregularPatchBuilder loses track of faces that overlap round a vertex, two that share both their edges there (an interior
-    // vertex of valence 2, or a part of one that is not manifold): it reads beyond its arrays, and sometimes crashes.
-    bool is_safe(int index) const {
-        auto const vertices = refiner->GetLevel(0).GetFaceVertices(index);
-        return std::none_of(vertices.begin(), vertices.end(), [&](int v) { return has_overlap(v); });
-    }
-
-    bool has_overlap(int vertex) const {
-        Far::TopologyLevel const level = refiner->GetLevel(0);
-        auto const faces = level.GetVertexFaces(vertex);
-        auto const places = level.GetVertexFaceLocalIndices(vertex);
-        std::vector<std::pair<int, int>> sides;
-        for (int i = 0; i < faces.size(); ++i) {
-            auto const edges = level.GetFaceEdges(faces[i]);
-            int const next = edges[places[i]], last = edges[(places[i] + edges.size() - 1) % edges.size()];
-            sides.emplace_back(std::min(next, last), std::max(next, last));
-        }
-        std::sort(sides.begin(), sides.end());
-        return std::adjacent_find(sides.begin(), sides.end()) != sides.end();
-    }
 
     // The surface of the last face asked for: samples come grouped by face.
     int face = -1;
@@ -184,12 +161,7 @@ osd_status osd_bfr_create(const osd_mesh *mesh, const double *points, int32_t sm
         options.SetApproxLevelSharp(sharp_level);
         bfr->factory = std::make_unique<osd_bfr::Factory>(*bfr->refiner, options);
         bfr->mesh_points.assign(points, points + 3 * mesh->vertex_count);
-        for (int face = 0; face < mesh->face_count; ++face) {
-            int const size = mesh->face_sizes[face];
-            if (ptex_faces(*mesh, size) == 1) bfr->ptex.push_back({face, -1});
-            else
-                for (int corner = 0; corner < size; ++corner) bfr->ptex.push_back({face, corner});
-        }
+        bfr->ptex = list_ptex(*mesh);
         return bfr;
     });
 }
@@ -203,8 +175,8 @@ osd_status osd_bfr_evaluate(osd_bfr *bfr, int32_t count, const int32_t *faces, c
             std::fill_n(jets, 9, 0.0);
             cells[i] = 1.0;
             require(faces[i] >= 0 && faces[i] < int32_t(bfr->ptex.size()), "ptex face out of range");
-            osd_bfr::Ptex const ptex = bfr->ptex[faces[i]];
-            if (!bfr->is_safe(ptex.face)) {
+            Ptex const ptex = bfr->ptex[faces[i]];
+            if (!is_safe(*bfr->refiner, ptex.face)) {
                 answers[i] = OSD_ANSWER_NOT_ASKED;
                 continue;
             }

@@ -18,6 +18,7 @@
 //! * [`verify`]: all of it compared with OpenSubdiv;
 //! * [`output`]: files, written whole or not at all;
 //! * [`page`]: the report of a verification as one HTML page;
+//! * [`bench`]: side by side with what a user could pick instead;
 //! * [`cli`]: the command line.
 //!
 //! ```
@@ -31,6 +32,7 @@
 //! ```
 
 pub mod adaptive;
+pub mod bench;
 pub mod cli;
 pub mod compare;
 pub mod curves;

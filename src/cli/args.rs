@@ -37,6 +37,8 @@ pub(super) enum Command {
     Quality(Box<super::quality::QualityArgs>),
     /// Say what a mesh is made of and what it will take
     Info(InfoArgs),
+    /// Measure against OpenSubdiv's evaluators, side by side, on this machine
+    Bench(BenchArgs),
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -47,6 +49,23 @@ pub(super) enum Backend {
     Gpu,
     /// OpenSubdiv's Far patches at isolation 10, with its end caps
     Osd,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct BenchArgs {
+    /// Control mesh (.obj, .usd, .usda, .usdc or .usdz)
+    pub mesh: Option<PathBuf>,
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Write the figures as JSON
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+    /// Only rows of these names, with commas between
+    #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = super::bench::work)]
+    pub only: Vec<crate::bench::Work>,
+    /// See that all works: few samples, one turn; the figures say little
+    #[arg(long)]
+    pub quick: bool,
 }
 
 #[derive(Debug, Args)]

@@ -10,6 +10,7 @@ macro_rules! tell {
 
 mod account;
 mod args;
+mod bench;
 mod compare;
 mod eval;
 mod field;
@@ -126,6 +127,7 @@ pub fn run() -> ExitCode {
         Command::Glints(args) => glints::run(&args),
         Command::Quality(args) => quality::run(&args),
         Command::Info(args) => info::run(&args),
+        Command::Bench(args) => bench::run(&args),
     });
     exit_code(result)
 }

@@ -1,17 +1,19 @@
 //! OpenSubdiv 3.5.0 through `ffi/osd.h`: topology refinement ([`Refiner`]) and the regression references
-//! ([`LimitStencils`], [`Far`], [`Bfr`]). The only `unsafe` of the crate lives here.
+//! ([`LimitStencils`], [`Far`], [`Bfr`]), and what benchmarks hold us against ([`BfrPeer`], [`OsdPeer`]). The only `unsafe` of the crate lives here.
 //!
 //! Each C++ object has one owner that releases it once. OpenSubdiv validates almost nothing, so every mesh passes
 //! [`SubdivMesh::validate`](crate::mesh::SubdivMesh::validate) on its way in.
 #![allow(unsafe_code)] // the one room where the crate's `deny` is lifted
 
 mod patches;
+mod peers;
 mod raw;
 mod reference;
 mod refiner;
 mod stencils;
 
 pub use patches::{EndCap, FarNet, FarPatch, Isolation};
+pub use peers::{BfrPeer, OsdPeer, PeerSamples};
 pub use reference::{Answer, Bfr, Far, Location, Reference, ReferenceJet};
 pub use refiner::{Level, NO_TWIN, Refiner, Rule};
 pub use stencils::{LimitStencils, Stencil};

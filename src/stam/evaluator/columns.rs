@@ -95,6 +95,11 @@ impl<T: Copy + Default> Results<T> {
         }
     }
 
+    /// Sets all numbers.
+    pub fn fill(&mut self, x: T) {
+        self.columns.as_flattened_mut().iter_mut().for_each(|column| column.fill(x));
+    }
+
     fn vector(&self, column: usize, sample: usize) -> [T; 3] {
         self.columns[column].each_ref().map(|numbers| numbers[sample])
     }

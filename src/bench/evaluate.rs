@@ -1,0 +1,125 @@
+//! Rows that evaluate the limit at samples.
+
+use super::{BenchError, Contest, Effort, Row};
+use crate::mesh::SubdivMesh;
+use crate::osd::{Bfr, BfrPeer, MAX_ISOLATION, OsdPeer, PeerSamples};
+use crate::statistics::scatter;
+use crate::stam::{Evaluator, LimitSurface, Real, Results, Wanted};
+use std::hint::black_box;
+
+/// Samples of a face where they are grouped.
+const OF_A_FACE: usize = 256;
+
+const WANTED: Wanted = Wanted { first: true, second: false, normal: false };
+
+/// Samples on faces with a surface, in groups, as many as asked for or less.
+fn grouped(surface: &LimitSurface, count: usize) -> Vec<(u32, f64, f64)> {
+    let faces: Vec<u32> =
+        (0..surface.ptex_count() as u32).filter(|&face| surface.locate(face, [0.5; 2]).is_some()).collect();
+    let groups = count.div_ceil(OF_A_FACE).min(faces.len());
+    let of_face = |group: usize| {
+        let face = faces[group * faces.len() / groups];
+        (0..OF_A_FACE).map(move |k| {
+            let [u, v] = scatter((k + group) as u32);
+            (face, u, v)
+        })
+    };
+    (0..groups).flat_map(of_face).collect()
+}
+
+/// Samples in the order of the evaluator, which keeps those of a patch together.
+fn in_order<T: Real>(evaluator: &Evaluator<T>, samples: &[(u32, f64, f64)]) -> Vec<(u32, T, T)> {
+    let typed: Vec<(u32, T, T)> = samples.iter().map(|&(face, u, v)| (face, T::of(u), T::of(v))).collect();
+    evaluator.place(&typed).order().iter().map(|&index| typed[index as usize]).collect()
+}
+
+/// A number type that Bfr evaluates in.
+pub(super) trait Peered: Real {
+    fn bfr(mesh: &SubdivMesh) -> Result<Box<dyn FnMut(&PeerSamples<Self>, &mut [[[Self; 3]; 3]])>, BenchError>;
+    /// Osd, in `f32` alone: the samples are placed here.
+    fn osd(mesh: &SubdivMesh, samples: &[(u32, Self, Self)]) -> Result<Option<Box<dyn FnMut()>>, BenchError>;
+    const NAME: &'static str;
+}
+
+macro_rules! peered {
+    ($type:ty, $name:literal, $osd:expr) => {
+        impl Peered for $type {
+            fn bfr(mesh: &SubdivMesh) -> Result<Box<dyn FnMut(&PeerSamples<Self>, &mut [[[Self; 3]; 3]])>, BenchError> {
+                let peer = BfrPeer::<$type>::new(mesh, Bfr::DEFAULT_LEVELS)?;
+                Ok(Box::new(move |samples, jets| peer.evaluate(samples, jets).expect("it evaluated before")))
+            }
+
+            fn osd(mesh: &SubdivMesh, samples: &[(u32, Self, Self)]) -> Result<Option<Box<dyn FnMut()>>, BenchError> {
+                $osd(mesh, samples)
+            }
+
+            const NAME: &'static str = $name;
+        }
+    };
+}
+
+peered!(f32, "evaluate_batched", osd_placed);
+peered!(f64, "evaluate_batched_f64", |_, _| Ok(None));
+
+fn osd_placed(mesh: &SubdivMesh, samples: &[(u32, f32, f32)]) -> Result<Option<Box<dyn FnMut()>>, BenchError> {
+    let mut osd = OsdPeer::new(mesh, MAX_ISOLATION)?;
+    osd.place(&PeerSamples::new(samples, mesh.ptex_count()))?;
+    let mut jets = vec![[[0.0f32; 3]; 3]; samples.len()];
+    Ok(Some(Box::new(move || osd.evaluate(black_box(&mut jets)).expect("it evaluated before"))))
+}
+
+pub(super) fn batched<T: Peered>(mesh: &SubdivMesh, effort: Effort) -> Result<Vec<Row>, BenchError> {
+    let surface = LimitSurface::new(mesh)?;
+    let evaluator = Evaluator::<T>::new(&surface)?;
+    let samples = in_order(&evaluator, &grouped(&surface, effort.samples));
+    let (count, placed) = (samples.len(), evaluator.place(&samples));
+    let (mut results, mut untouched) = (Results::<T>::new(WANTED, count), Results::<T>::new(WANTED, count));
+    let peer_samples = PeerSamples::new(&samples, surface.ptex_count());
+    let mut jets = vec![[[T::default(); 3]; 3]; count];
+    let mut bfr = T::bfr(mesh)?;
+    let mut contest = Contest::new(|| evaluator.evaluate(&placed, black_box(results.columns())))
+        .against("bfr", || bfr(&peer_samples, black_box(&mut jets)));
+    if let Some(osd) = T::osd(mesh, &samples)? {
+        contest = contest.against("osd", osd);
+    }
+    contest = contest.floor(|| untouched.fill(black_box(T::default())));
+    let per_sample = 1e9 / count as f64;
+    let note = format!(
+        "{count} samples grouped by patch, {OF_A_FACE} a face: P, du, dv; patches found before (Bfr finds them itself); Bfr at its default \
+         levels 2 and 6, Osd at isolation 10; floor: writing the {} bytes of a result",
+        9 * size_of::<T>()
+    );
+    let mut rows = vec![contest.row(T::NAME, "ns/sample", per_sample, note, effort)];
+    rows[0].note.push_str(&format!("; tables {} bytes", evaluator.bytes()));
+    Ok(rows)
+}
+
+pub(super) fn random(mesh: &SubdivMesh, effort: Effort) -> Result<Vec<Row>, BenchError> {
+    let surface = LimitSurface::new(mesh)?;
+    let evaluator = Evaluator::<f32>::new(&surface)?;
+    let faces: Vec<u32> =
+        (0..surface.ptex_count() as u32).filter(|&face| surface.locate(face, [0.5; 2]).is_some()).collect();
+    let sample = |k: usize| {
+        let [u, v] = scatter(k as u32);
+        // Knuth's multiplicative hash: no order that a cache could follow.
+        let face = faces[((k as u64 * 2_654_435_761) >> 7) as usize % faces.len()];
+        (face, u as f32, v as f32)
+    };
+    let samples: Vec<_> = (0..effort.samples).map(sample).collect();
+    let peer_samples = PeerSamples::new(&samples, surface.ptex_count());
+    let room = || vec![[[0.0f32; 3]; 3]; samples.len()];
+    let (mut ours, mut theirs, mut others) = (room(), room(), room());
+    let mut osd = OsdPeer::new(mesh, MAX_ISOLATION)?;
+    let mut bfr = f32::bfr(mesh)?;
+    let contest = Contest::new(|| evaluator.each(&samples, black_box(&mut ours)))
+        .against("osd", || {
+            osd.place(&peer_samples).expect("it placed before");
+            osd.evaluate(black_box(&mut theirs)).expect("it evaluated before");
+        })
+        .against("bfr", || bfr(&peer_samples, black_box(&mut others)));
+    let note = format!(
+        "{} samples on random faces: the patch is found, then P, du, dv; Osd at isolation 10, FindPatch and EvalPatches; Bfr at its default levels",
+        samples.len()
+    );
+    Ok(vec![contest.row("evaluate_random", "ns/sample", 1e9 / samples.len() as f64, note, effort)])
+}

@@ -1,0 +1,138 @@
+//! Side by side with what a user could pick instead: the figures of docs/PERFORMANCE.md.
+//!
+//! # Practice
+//! A [`Row`] is one piece of work, done by us and by peers in the same process, on the same samples with the same outputs. Everybody warms
+//! up once, then all take turns, so that what the machine does beside hits all alike; of three runs each gives a median, and what counts is
+//! the ratio. The floor is what the same run measured for the least that the work cannot do without.
+
+mod contest;
+mod evaluate;
+mod normals;
+mod tables;
+
+pub use contest::{Contest, Figure};
+
+use crate::mesh::SubdivMesh;
+use crate::osd;
+use crate::gpu::{Gpu, GpuError};
+use crate::memory::TooMuch;
+use crate::patch::PatchError;
+use crate::stam::MoveError;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// Why a row was not measured.
+#[derive(Debug, thiserror::Error)]
+pub enum BenchError {
+    /// The mesh has no limit surface.
+    #[error(transparent)]
+    Patch(#[from] PatchError),
+    /// Control points could not be moved.
+    #[error(transparent)]
+    Move(#[from] MoveError),
+    /// OpenSubdiv refused the mesh.
+    #[error(transparent)]
+    Osd(#[from] osd::Error),
+    /// The adapter failed.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+    /// Tables take more memory than there is.
+    #[error("the evaluator: {0}")]
+    Memory(#[from] TooMuch),
+}
+
+/// The work that is measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Work {
+    /// Position, du and dv of samples grouped by patch, one thread, `f32`.
+    Batched,
+    /// The same in `f64`.
+    BatchedDouble,
+    /// Position, du and dv of samples on random faces, the search for their patches counted in, one thread, `f32`.
+    Random,
+    /// From a mesh in memory to tables on the adapter, one thread.
+    Tables,
+    /// Control points move, topology stays, one thread.
+    Update,
+    /// How far normals in `f32` are off.
+    NormalError,
+}
+
+impl Work {
+    /// All, in the order of the report.
+    pub const ALL: [Self; 6] = [
+        Self::Batched,
+        Self::BatchedDouble,
+        Self::Random,
+        Self::Tables,
+        Self::Update,
+        Self::NormalError,
+    ];
+
+    /// Name in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Batched => "evaluate_batched",
+            Self::BatchedDouble => "evaluate_batched_f64",
+            Self::Random => "evaluate_random",
+            Self::Tables => "tables",
+            Self::Update => "update",
+            Self::NormalError => "normal_error",
+        }
+    }
+}
+
+/// One figure of ours beside those of peers.
+#[derive(Debug, Clone, Serialize)]
+pub struct Row {
+    /// What was done.
+    pub name: String,
+    /// Unit of all figures; less is better.
+    pub unit: &'static str,
+    /// Ours: the median.
+    pub catoptric: f64,
+    /// Theirs, by peer; `None` where one does not do this.
+    pub peers: BTreeMap<&'static str, Option<f64>>,
+    /// The least that the work cannot do without, where it was measured.
+    pub floor: Option<f64>,
+    /// Theirs over ours, least and largest of the runs.
+    pub ratios: BTreeMap<&'static str, [f64; 2]>,
+    /// What was measured, in words.
+    pub note: String,
+}
+
+/// How much is measured.
+#[derive(Debug, Clone, Copy)]
+pub struct Effort {
+    /// Turns that each contestant takes in a run.
+    pub turns: usize,
+    /// Samples of the rows that evaluate.
+    pub samples: usize,
+}
+
+impl Effort {
+    /// What the documentation quotes.
+    pub const FULL: Self = Self { turns: 9, samples: 1 << 17 };
+    /// Enough to see that all works.
+    pub const QUICK: Self = Self { turns: 1, samples: 1 << 12 };
+}
+
+/// Measures one piece of work on a mesh; none where it needs an adapter and there is none.
+///
+/// # Errors
+/// Somebody refuses the mesh.
+pub fn measure(work: Work, mesh: &SubdivMesh, effort: Effort, gpu: Option<&Gpu>) -> Result<Vec<Row>, BenchError> {
+    match work {
+        Work::Batched => evaluate::batched::<f32>(mesh, effort),
+        Work::BatchedDouble => evaluate::batched::<f64>(mesh, effort),
+        Work::Random => evaluate::random(mesh, effort),
+        Work::Tables => gpu.map_or(Ok(Vec::new()), |gpu| tables::tables(mesh, effort, gpu)),
+        Work::Update => tables::update(mesh, effort),
+        Work::NormalError => normals::errors(mesh, effort),
+    }
+}
+
+/// Where what we spread over threads runs on one.
+fn one_thread() -> rayon::ThreadPool {
+    rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool of one thread")
+}
