@@ -24,21 +24,23 @@ fn least_area<T: Real>() -> f64 {
 
 impl<T: Real> Normals<'_, '_, T> {
     #[inline(always)]
-    pub fn run<S: Simd>(mut self, simd: S) {
+    pub fn run<S: Simd>(self, simd: S) {
         let (count, lanes) = (self.first[0][0].len(), T::count::<S>());
-        let mul = |a, b| T::mul(simd, a, b);
         let least = least_area::<T>() * self.longest;
         let mut lengths = [T::default(); 64];
-        for at in (0..count).step_by(lanes) {
+        let mut at = 0;
+        while at < count {
             let end = (at + lanes).min(count);
-            let [a, b] = self.first.map(|column| column.map(|slice| T::load(simd, &slice[at..end])));
-            let minor = |i: usize, j: usize| T::sub(simd, mul(a[i], b[j]), mul(a[j], b[i]));
-            let n = [minor(1, 2), minor(2, 0), minor(0, 1)];
-            let square = T::mul_add(simd, n[0], n[0], T::mul_add(simd, n[1], n[1], mul(n[2], n[2])));
+            let a = load(simd, &self.first[0], at, end);
+            let b = load(simd, &self.first[1], at, end);
+            let x = minor::<S, T>(simd, [a[1], b[2]], [a[2], b[1]]);
+            let y = minor::<S, T>(simd, [a[2], b[0]], [a[0], b[2]]);
+            let z = minor::<S, T>(simd, [a[0], b[1]], [a[1], b[0]]);
+            let square = T::mul_add(simd, x, x, T::mul_add(simd, y, y, T::mul(simd, z, z)));
             let length = T::sqrt(simd, square);
-            for (out, x) in self.out.iter_mut().zip(n) {
-                T::store(simd, &mut out[at..end], T::div(simd, x, length));
-            }
+            T::store(simd, &mut self.out[0][at..end], T::div(simd, x, length));
+            T::store(simd, &mut self.out[1][at..end], T::div(simd, y, length));
+            T::store(simd, &mut self.out[2][at..end], T::div(simd, z, length));
             T::store(simd, &mut lengths[..end - at], length);
             for (k, length) in lengths[..end - at].iter().enumerate() {
                 let length = length.to_f64();
@@ -46,8 +48,20 @@ impl<T: Real> Normals<'_, '_, T> {
                     self.unclear.push(self.row + at + k);
                 }
             }
+            at = end;
         }
     }
+}
+
+#[inline(always)]
+fn load<S: Simd, T: Real>(simd: S, from: &[&[T]; 3], at: usize, end: usize) -> [T::Vector<S>; 3] {
+    [T::load(simd, &from[0][at..end]), T::load(simd, &from[1][at..end]), T::load(simd, &from[2][at..end])]
+}
+
+/// The difference of two products.
+#[inline(always)]
+fn minor<S: Simd, T: Real>(simd: S, [a, b]: [T::Vector<S>; 2], [c, d]: [T::Vector<S>; 2]) -> T::Vector<S> {
+    T::sub(simd, T::mul(simd, a, b), T::mul(simd, c, d))
 }
 
 /// Bounds of the derivatives of a piece over u and v up to these in absolute value, multiplied.

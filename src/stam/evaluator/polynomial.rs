@@ -42,6 +42,9 @@ pub struct Run<'a, 'b, T, const ORDER: usize> {
     pub first: usize,
 }
 
+// What follows is compiled for each vector width by being inlined into a function that has the instructions: closures, and what takes
+// them, would be left behind as calls.
+
 impl<T: Real, const ORDER: usize> Run<'_, '_, T, ORDER> {
     #[inline(always)]
     pub fn run<S: Simd>(self, simd: S) {
@@ -50,12 +53,16 @@ impl<T: Real, const ORDER: usize> Run<'_, '_, T, ORDER> {
         let mut at = 0;
         while at < count {
             let end = (at + lanes).min(count);
-            let [x, y] = [u, v].map(|t| T::load(simd, &t[at..end]));
-            for coordinate in 0..3 {
+            let (x, y) = (T::load(simd, &u[at..end]), T::load(simd, &v[at..end]));
+            let mut coordinate = 0;
+            while coordinate < 3 {
                 let jet = jet::<S, T, ORDER>(simd, piece, coordinate, x, y);
-                for (k, value) in jet.into_iter().take(COLUMNS[ORDER] / 3).enumerate() {
-                    T::store(simd, &mut out[3 * k + coordinate][first + at..first + end], value);
+                let mut k = 0;
+                while k < COLUMNS[ORDER] / 3 {
+                    T::store(simd, &mut out[3 * k + coordinate][first + at..first + end], jet[k]);
+                    k += 1;
                 }
+                coordinate += 1;
             }
             at = end;
         }
@@ -71,41 +78,56 @@ fn jet<S: Simd, T: Real, const ORDER: usize>(
     u: T::Vector<S>,
     v: T::Vector<S>,
 ) -> [T::Vector<S>; 6] {
-    let constant = |p, q| T::splat(simd, piece.0[Piece::<T>::slot(p, q, coordinate)]);
-    let rows: [_; 4] = std::array::from_fn(|q| horner::<S, T, ORDER>(simd, std::array::from_fn(|p| constant(p, q)), u));
-    let along = |k: usize| [rows[0][k], rows[1][k], rows[2][k], rows[3][k]];
-    let [value, dv, dvv] = horner::<S, T, ORDER>(simd, along(0), v);
+    let a = horner::<S, T, ORDER>(simd, row(simd, piece, 0, coordinate), u);
+    let b = horner::<S, T, ORDER>(simd, row(simd, piece, 1, coordinate), u);
+    let c = horner::<S, T, ORDER>(simd, row(simd, piece, 2, coordinate), u);
+    let d = horner::<S, T, ORDER>(simd, row(simd, piece, 3, coordinate), u);
+    let [value, dv, dvv] = horner::<S, T, ORDER>(simd, [a[0], b[0], c[0], d[0]], v);
     match ORDER {
         0 => [value; 6],
         1 => {
-            let [du, ..] = horner::<S, T, 0>(simd, along(1), v);
+            let [du, ..] = horner::<S, T, 0>(simd, [a[1], b[1], c[1], d[1]], v);
             [value, du, dv, value, value, value]
         }
         _ => {
-            let [du, duv, _] = horner::<S, T, 1>(simd, along(1), v);
-            let [duu, ..] = horner::<S, T, 0>(simd, along(2), v);
+            let [du, duv, _] = horner::<S, T, 1>(simd, [a[1], b[1], c[1], d[1]], v);
+            let [duu, ..] = horner::<S, T, 0>(simd, [a[2], b[2], c[2], d[2]], v);
             [value, du, dv, duu, duv, dvv]
         }
     }
 }
 
+/// The cubic in u that v^q has, in all lanes.
+#[inline(always)]
+fn row<S: Simd, T: Real>(simd: S, piece: &Piece<T>, q: usize, coordinate: usize) -> [T::Vector<S>; 4] {
+    [
+        T::splat(simd, piece.0[Piece::<T>::slot(0, q, coordinate)]),
+        T::splat(simd, piece.0[Piece::<T>::slot(1, q, coordinate)]),
+        T::splat(simd, piece.0[Piece::<T>::slot(2, q, coordinate)]),
+        T::splat(simd, piece.0[Piece::<T>::slot(3, q, coordinate)]),
+    ]
+}
+
 /// A cubic with its first and second derivative by one sweep of Horner's rule (Knuth, The Art of Computer Programming 2, section 4.6.4);
 /// those beyond `ORDER` repeat the value.
 #[inline(always)]
-fn horner<S: Simd, T: Real, const ORDER: usize>(simd: S, c: [T::Vector<S>; 4], t: T::Vector<S>) -> [T::Vector<S>; 3] {
-    let step = |a, b| T::mul_add(simd, a, t, b);
-    let value_2 = step(c[3], c[2]);
-    let value_1 = step(value_2, c[1]);
-    let value = step(value_1, c[0]);
+fn horner<S: Simd, T: Real, const ORDER: usize>(
+    simd: S,
+    c: [T::Vector<S>; 4],
+    t: T::Vector<S>,
+) -> [T::Vector<S>; 3] {
+    let value_2 = T::mul_add(simd, c[3], t, c[2]);
+    let value_1 = T::mul_add(simd, value_2, t, c[1]);
+    let value = T::mul_add(simd, value_1, t, c[0]);
     if ORDER == 0 {
         return [value; 3];
     }
-    let first_1 = step(c[3], value_2);
-    let first = step(first_1, value_1);
+    let first_1 = T::mul_add(simd, c[3], t, value_2);
+    let first = T::mul_add(simd, first_1, t, value_1);
     if ORDER == 1 {
         return [value, first, value];
     }
-    let second = step(c[3], first_1);
+    let second = T::mul_add(simd, c[3], t, first_1);
     [value, first, T::add(simd, second, second)]
 }
 
@@ -114,27 +136,46 @@ fn horner<S: Simd, T: Real, const ORDER: usize>(simd: S, c: [T::Vector<S>; 4], t
 pub fn single<S: Simd, T: Real>(simd: S, piece: &Piece<T>, u: T, v: T) -> [[T; 3]; 3] {
     let lanes = T::count::<S>();
     // Rows first: u runs over all four at a time.
-    let [mut values, mut slopes] = [[T::default(); 12]; 2];
+    let (mut values, mut slopes) = ([T::default(); 12], [T::default(); 12]);
     let t = T::splat(simd, u);
-    for at in (0..12).step_by(lanes) {
+    let mut at = 0;
+    while at < 12 {
         let end = (at + lanes).min(12);
-        let c = std::array::from_fn(|p| T::load(simd, &piece.0[12 * p + at..12 * p + end]));
+        let c = [
+            T::load(simd, &piece.0[at..end]),
+            T::load(simd, &piece.0[12 + at..12 + end]),
+            T::load(simd, &piece.0[24 + at..24 + end]),
+            T::load(simd, &piece.0[36 + at..36 + end]),
+        ];
         let [value, slope, _] = horner::<S, T, 1>(simd, c, t);
         T::store(simd, &mut values[at..end], value);
         T::store(simd, &mut slopes[at..end], slope);
+        at = end;
     }
     let t = T::splat(simd, v);
     let mut out = [[T::default(); 3]; 3];
-    for at in (0..3).step_by(lanes) {
+    let mut at = 0;
+    while at < 3 {
         let end = (at + lanes).min(3);
-        let rows = |from: &[T; 12]| std::array::from_fn(|q| T::load(simd, &from[3 * q + at..3 * q + end]));
-        let [value, dv, _] = horner::<S, T, 1>(simd, rows(&values), t);
-        let [du, ..] = horner::<S, T, 0>(simd, rows(&slopes), t);
-        for (out, x) in out.iter_mut().zip([value, du, dv]) {
-            T::store(simd, &mut out[at..end], x);
-        }
+        let [value, dv, _] = horner::<S, T, 1>(simd, rows(simd, &values, at, end), t);
+        let [du, ..] = horner::<S, T, 0>(simd, rows(simd, &slopes, at, end), t);
+        T::store(simd, &mut out[0][at..end], value);
+        T::store(simd, &mut out[1][at..end], du);
+        T::store(simd, &mut out[2][at..end], dv);
+        at = end;
     }
     out
+}
+
+/// Coordinates `at..end` of the four rows.
+#[inline(always)]
+fn rows<S: Simd, T: Real>(simd: S, from: &[T; 12], at: usize, end: usize) -> [T::Vector<S>; 4] {
+    [
+        T::load(simd, &from[at..end]),
+        T::load(simd, &from[3 + at..3 + end]),
+        T::load(simd, &from[6 + at..6 + end]),
+        T::load(simd, &from[9 + at..9 + end]),
+    ]
 }
 
 /// A dense matrix times points: `out[c][r] = sum of matrix[k * rows + r] * points[c][k]` over k.
@@ -170,21 +211,35 @@ impl Product<'_> {
     fn block<S: Simd, const V: usize>(&mut self, simd: S, at: usize) {
         let lanes = f64::count::<S>();
         let rows = self.out[0].len();
-        let mut sums = [[f64::splat(simd, 0.0); V]; 3];
-        for (k, column) in self.matrix.chunks_exact(rows).enumerate() {
-            let column = &column[at..at + V * lanes];
-            let weights: [_; V] = std::array::from_fn(|i| f64::load(simd, &column[i * lanes..(i + 1) * lanes]));
-            for (sums, points) in sums.iter_mut().zip(&self.points) {
-                let point = f64::splat(simd, points[k]);
-                for (sum, weight) in sums.iter_mut().zip(weights) {
-                    *sum = <f64 as Lanes>::mul_add(simd, weight, point, *sum);
-                }
+        let zero = <f64 as Lanes>::splat(simd, 0.0);
+        let mut sums = [[zero; V]; 3];
+        let [x, y, z] = self.points;
+        let mut k = 0;
+        while k < x.len() {
+            let column = &self.matrix[k * rows + at..k * rows + at + V * lanes];
+            let point = [
+                <f64 as Lanes>::splat(simd, x[k]),
+                <f64 as Lanes>::splat(simd, y[k]),
+                <f64 as Lanes>::splat(simd, z[k]),
+            ];
+            let mut i = 0;
+            while i < V {
+                let weight = <f64 as Lanes>::load(simd, &column[i * lanes..(i + 1) * lanes]);
+                sums[0][i] = <f64 as Lanes>::mul_add(simd, weight, point[0], sums[0][i]);
+                sums[1][i] = <f64 as Lanes>::mul_add(simd, weight, point[1], sums[1][i]);
+                sums[2][i] = <f64 as Lanes>::mul_add(simd, weight, point[2], sums[2][i]);
+                i += 1;
             }
+            k += 1;
         }
-        for (out, sums) in self.out.iter_mut().zip(sums) {
-            for (i, sum) in sums.into_iter().enumerate() {
-                f64::store(simd, &mut out[at + i * lanes..at + (i + 1) * lanes], sum);
+        let mut c = 0;
+        while c < 3 {
+            let mut i = 0;
+            while i < V {
+                <f64 as Lanes>::store(simd, &mut self.out[c][at + i * lanes..at + (i + 1) * lanes], sums[c][i]);
+                i += 1;
             }
+            c += 1;
         }
     }
 }
