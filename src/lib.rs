@@ -38,6 +38,7 @@ pub mod compare;
 pub mod curves;
 pub mod field;
 pub mod gpu;
+mod kept;
 mod line;
 pub mod memory;
 pub mod mesh;

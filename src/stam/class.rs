@@ -13,15 +13,17 @@
 //! levels.
 //!
 //! # Practice
-//! [`ClassTable::new`] builds the matrices of one class; patches of the class share them.
+//! [`ClassTable::new`] builds the matrices of one class; patches of the class share them, and so do all meshes ([`ClassTable::shared`]).
 
 use super::loop_modes;
 use super::loop_rows::{LOOP_WINDOW, LoopRows};
 use super::modes::Modes;
 use super::rows::{Row, Rows};
 use super::surface::combine;
+use crate::kept::Kept;
 use crate::patch::RingClass;
 use glam::DVec3;
+use std::sync::Arc;
 
 /// Levels kept in f64: the smallest u or v above zero that doubles near 1 resolve.
 pub const LEVELS: usize = 52;
@@ -34,9 +36,16 @@ pub const WINDOW_POINTS: usize = 24;
 /// Beyond, levels are computed by stepping.
 const KEPT_FACES: u16 = 16;
 
+/// Faces up to which a class is kept for other meshes: a hundred classes, 25 MB when all have come up.
+const SHARED_FACES: u16 = 8;
+
+/// Classes that came up.
+static SHARED: Kept<RingClass, ClassTable> = Kept::new();
+
 /// Matrices shared by all patches of a class.
 #[derive(Debug)]
 pub struct ClassTable {
+    class: RingClass,
     /// lambda: largest eigenvalue of the subdivision matrix below 1.
     pub lambda: f64,
     /// l0: weights of the control points in the limit position of the extraordinary vertex.
@@ -68,11 +77,27 @@ impl ClassTable {
         };
         let limit = left_eigenvector_of_one(&step);
         let Modes { lambda, tangents, spare } = modes;
-        let mut table = Self { lambda, limit, tangents, spare, step, windows, levels: Vec::new() };
+        let mut table = Self { class, lambda, limit, tangents, spare, step, windows, levels: Vec::new() };
         if class.faces <= KEPT_FACES {
             table.levels = table.matrices();
         }
         table
+    }
+
+    /// As [`new`](Self::new); classes of up to 8 faces are built once and kept for the life of the process.
+    pub fn shared(class: RingClass) -> Arc<Self> {
+        let build = || Self::new(class);
+        if class.faces <= SHARED_FACES { SHARED.get(class, build) } else { Arc::new(build()) }
+    }
+
+    /// The class.
+    pub fn class(&self) -> RingClass {
+        self.class
+    }
+
+    /// Whether what is derived from it is worth keeping for other meshes.
+    pub(crate) fn is_shared(&self) -> bool {
+        self.class.faces <= SHARED_FACES
     }
 
     /// Mhat(1) = A' (1 - 1 l0), Mhat(n+1) = Mhat(n) B / lambda.

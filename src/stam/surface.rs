@@ -43,7 +43,7 @@ pub enum Net {
 #[derive(Debug, Clone)]
 pub struct LimitSurface {
     patches: Arc<Patches>,
-    tables: Arc<Vec<ClassTable>>,
+    tables: Arc<Vec<Arc<ClassTable>>>,
     /// Refined points of all levels.
     points: Arc<Vec<DVec3>>,
     /// Where parts of a scene are others in another place, what is in `patches` and `points` once.
@@ -87,7 +87,7 @@ impl LimitSurface {
     }
 
     fn of(patches: Patches, points: Vec<DVec3>, mesh: &SubdivMesh) -> Self {
-        let tables = patches.classes().par_iter().map(|&class| ClassTable::new(class)).collect();
+        let tables = patches.classes().par_iter().map(|&class| ClassTable::shared(class)).collect();
         Self {
             patches: Arc::new(patches),
             tables: Arc::new(tables),
@@ -129,7 +129,7 @@ impl LimitSurface {
     }
 
     /// The class tables.
-    pub fn tables(&self) -> &[ClassTable] {
+    pub fn tables(&self) -> &[Arc<ClassTable>] {
         &self.tables
     }
 

@@ -16,8 +16,12 @@
 //! # Practice
 //! [`Basis::new`] by Gram-Schmidt with row pivots, in f64, some 0.3 ms for a class of valence 5.
 
+use super::TABLE_LEVELS;
+use crate::kept::Kept;
+use crate::patch::RingClass;
 use crate::stam::{ClassTable, WINDOW_POINTS};
 use std::ops::RangeInclusive;
+use std::sync::Arc;
 
 /// Rows of M that are left out are below this part of the largest row: half of f32's rounding (2^-24), so that what is
 /// left out and what is rounded are alike.
@@ -32,7 +36,19 @@ pub(super) struct Basis {
     pub weights: Vec<f64>,
 }
 
+/// Bases of classes that came up, by class and first level.
+static SHARED: Kept<(RingClass, usize), Option<Arc<Basis>>> = Kept::new();
+
 impl Basis {
+    /// As [`new`](Self::new), of the levels from `first` on; those of classes that are kept for other meshes are kept too.
+    pub fn shared(table: &ClassTable, first: usize) -> Option<Arc<Basis>> {
+        let build = || Basis::new(table, first..=TABLE_LEVELS).map(Arc::new);
+        match table.is_shared() {
+            true => Option::clone(&SHARED.get((table.class(), first), build)),
+            false => build(),
+        }
+    }
+
     /// Decomposes these levels of a class; `None` for large classes, which keep no matrices (more than 16 faces): their
     /// patches are few and stay expanded.
     pub fn new(table: &ClassTable, levels: RangeInclusive<usize>) -> Option<Basis> {
@@ -103,9 +119,8 @@ fn solve(triangle: &[Vec<f64>], row: &mut [f64]) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::TABLE_LEVELS;
     use super::*;
-    use crate::patch::{RingClass, Tip};
+    use crate::patch::Tip;
 
     fn classes() -> Vec<RingClass> {
         let class = |faces, closed, index, tip, sharp_spoke| RingClass {

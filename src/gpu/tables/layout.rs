@@ -89,7 +89,7 @@ pub(super) struct Plan {
     /// Levels stored point by point of the patches that have a class.
     pub expanded: usize,
     /// The rest, class by class; none where all levels are expanded.
-    pub bases: Arc<Vec<Option<Basis>>>,
+    pub bases: Arc<Vec<Option<Arc<Basis>>>>,
     /// Some patches are [`Storage::Gregory`].
     pub has_gregory: bool,
     /// Patches are triangles.
@@ -137,7 +137,7 @@ impl Plan {
     fn of(
         census: &Census,
         layout: TableLayout,
-        bases: Arc<Vec<Option<Basis>>>,
+        bases: Arc<Vec<Option<Arc<Basis>>>>,
         has_gregory: bool,
         transforms: Vec<DAffine3>,
     ) -> Plan {
@@ -177,7 +177,7 @@ impl Plan {
 
     /// What gives the levels of a class that are not expanded.
     pub fn basis(&self, class: usize) -> Option<&Basis> {
-        self.bases.get(class)?.as_ref()
+        self.bases.get(class)?.as_deref()
     }
 
     /// Texels of a patch.
@@ -208,10 +208,10 @@ impl Plan {
 }
 
 /// What gives the levels of each class that a layout does not expand.
-fn bases<S: PatchSource + ?Sized>(source: &S, layout: TableLayout) -> Arc<Vec<Option<Basis>>> {
+fn bases<S: PatchSource + ?Sized>(source: &S, layout: TableLayout) -> Arc<Vec<Option<Arc<Basis>>>> {
     let levels = layout.expanded_levels() + 1..=TABLE_LEVELS;
     let classes = if levels.is_empty() { &[] } else { source.classes() };
-    Arc::new(classes.par_iter().map(|table| Basis::new(table, levels.clone())).collect())
+    Arc::new(classes.par_iter().map(|table| Basis::shared(table, *levels.start())).collect())
 }
 
 /// Texels of a transform: the columns of its matrix.

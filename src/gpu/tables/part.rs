@@ -35,7 +35,7 @@ impl PatchSource for Part {
         self.whole.storage(self.at(patch))
     }
 
-    fn classes(&self) -> &[ClassTable] {
+    fn classes(&self) -> &[Arc<ClassTable>] {
         self.whole.classes()
     }
 

@@ -88,7 +88,7 @@ pub trait PatchSource: Debug + Send + Sync {
     /// How a patch is stored.
     fn storage(&self, patch: usize) -> Storage;
     /// The classes whose matrices patches share; none if every irregular patch is to be stored level by level.
-    fn classes(&self) -> &[ClassTable];
+    fn classes(&self) -> &[Arc<ClassTable>];
     /// Index into [`classes`](Self::classes) of an irregular patch.
     fn class(&self, patch: usize) -> Option<usize>;
     /// Of a patch that is an earlier one in another place: that one, and which of [`transforms`](Self::transforms) moves it.
@@ -148,7 +148,7 @@ impl PatchSource for LimitSurface {
         }
     }
 
-    fn classes(&self) -> &[ClassTable] {
+    fn classes(&self) -> &[Arc<ClassTable>] {
         // Triangles are stored level by level.
         if self.has_triangles() { &[] } else { self.tables() }
     }
@@ -222,7 +222,7 @@ impl PatchSource for Vec<[DVec3; 16]> {
         Storage::Regular
     }
 
-    fn classes(&self) -> &[ClassTable] {
+    fn classes(&self) -> &[Arc<ClassTable>] {
         &[]
     }
 
@@ -266,7 +266,7 @@ impl PatchSource for AdaptivePatches {
         }
     }
 
-    fn classes(&self) -> &[ClassTable] {
+    fn classes(&self) -> &[Arc<ClassTable>] {
         &[]
     }
 

@@ -42,7 +42,7 @@ pub use pieces::PIECE_LEVELS;
 pub use real::Real;
 pub use samples::Samples;
 
-use super::LimitSurface;
+use super::{Jet2, LimitSurface};
 use crate::memory::{self, TooMuch};
 use batch::{Batch, Ordered};
 use glam::DVec3;
@@ -190,8 +190,15 @@ impl<T: Real> Evaluator<T> {
     fn on_patches(&self, places: &[(u32, [f64; 2])], mut columns: Columns<'_, T>) {
         for (index, &(patch, uv)) in places.iter().enumerate() {
             let patch = patch as usize;
-            let jet = self.surface.patches()[patch].jet2_to_ptex(self.surface.evaluate_second(patch, uv));
+            let of = &self.surface.patches()[patch];
             let Columns { position, first, second, normal } = &mut columns;
+            let jet = match second {
+                Some(_) => of.jet2_to_ptex(self.surface.evaluate_second(patch, uv)),
+                None => {
+                    let first = of.jet_to_ptex(self.surface.evaluate(patch, uv));
+                    Jet2 { first, duu: DVec3::ZERO, duv: DVec3::ZERO, dvv: DVec3::ZERO }
+                }
+            };
             write(position, index, jet.first.position);
             first.iter_mut().for_each(|[du, dv]| {
                 write(du, index, jet.first.du);
@@ -244,15 +251,23 @@ impl<T: Real> WithSimd for Each<'_, T> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Evaluator { surface, plan, pieces } = self.evaluator;
-        for (&(ptex, u, v), out) in self.samples.iter().zip(self.out) {
-            *out = match Place::new(surface, plan, ptex, [u.to_f64(), v.to_f64()]) {
-                Place::Piece(piece, [u, v]) => single(simd, &pieces[piece as usize], T::of(u), T::of(v)),
-                Place::Patch(patch, uv) => {
-                    let jet = surface.patches()[patch as usize].jet_to_ptex(surface.evaluate(patch as usize, uv));
-                    [jet.position, jet.du, jet.dv].map(|x| x.to_array().map(T::of))
-                }
-                Place::Hole => [[T::default(); 3]; 3],
-            };
+        let Self { samples, out, .. } = self;
+        // Found first, some at a time: the search branches, and what follows it fetches memory for many samples at once.
+        let mut places = [Place::Hole; 32];
+        for (samples, out) in samples.chunks(places.len()).zip(out.chunks_mut(places.len())) {
+            for (&(ptex, u, v), place) in samples.iter().zip(&mut places) {
+                *place = Place::new(surface, plan, ptex, [u.to_f64(), v.to_f64()]);
+            }
+            for (out, place) in out.iter_mut().zip(&places) {
+                *out = match *place {
+                    Place::Piece(piece, [u, v]) => single(simd, &pieces[piece as usize], T::of(u), T::of(v)),
+                    Place::Patch(patch, uv) => {
+                        let jet = surface.patches()[patch as usize].jet_to_ptex(surface.evaluate(patch as usize, uv));
+                        [jet.position, jet.du, jet.dv].map(|x| x.to_array().map(T::of))
+                    }
+                    Place::Hole => [[T::default(); 3]; 3],
+                };
+            }
         }
     }
 }

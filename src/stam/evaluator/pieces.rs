@@ -6,10 +6,12 @@
 
 use super::polynomial::{Piece, Product};
 use super::real::{Real, vectorized};
-use crate::patch::Patch;
+use crate::kept::Kept;
+use crate::patch::{Patch, RingClass};
 use crate::stam::{ClassTable, LimitSurface, WINDOWS};
 use glam::DVec3;
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// Levels of an irregular patch that are stored: all of it but 4^-4 of its area.
 pub const PIECE_LEVELS: usize = 4;
@@ -32,14 +34,14 @@ pub struct Plan {
     pub first: Vec<u32>,
     regular: Vec<f64>,
     /// By class: a column of 16 coefficients for each piece, for each control point; none for classes that keep no matrices.
-    classes: Vec<Option<Vec<f64>>>,
+    classes: Vec<Option<Arc<Vec<f64>>>>,
 }
 
 impl Plan {
     pub fn new(surface: &LimitSurface) -> Self {
-        let classes: Vec<Option<Vec<f64>>> = match surface.has_triangles() {
+        let classes: Vec<Option<Arc<Vec<f64>>>> = match surface.has_triangles() {
             true => vec![None; surface.tables().len()],
-            false => surface.tables().par_iter().map(irregular_matrix).collect(),
+            false => surface.tables().par_iter().map(|table| shared_matrix(table)).collect(),
         };
         let mut first = Vec::with_capacity(surface.patches().len() + 1);
         let mut pieces = 0;
@@ -90,34 +92,26 @@ impl Plan {
         });
     }
 
-    fn fill_patch<T: Real>(
-        &self,
-        surface: &LimitSurface,
-        patch: usize,
-        scratch: &mut Scratch,
-        pieces: &mut [Piece<T>],
-    ) {
+    fn fill_patch<T: Real>(&self, surface: &LimitSurface, patch: usize, scratch: &mut Scratch, pieces: &mut [Piece<T>]) {
         if pieces.is_empty() {
             return;
         }
-        let (matrix, origin) = match surface.class(patch) {
-            None => {
-                let net = surface.regular_net(patch);
-                scratch.take(net.iter().map(|point| *point - net[5]));
-                (&self.regular, net[5])
-            }
-            Some(class) => {
-                let (points, limit) = surface.irregular_net(patch, &surface.tables()[class]);
-                scratch.take(points.into_iter());
-                (self.classes[class].as_ref().expect("patches without a matrix have no pieces"), limit)
-            }
-        };
-        scratch.multiply(matrix, 16 * pieces.len());
         let of = &surface.patches()[patch];
-        for (k, piece) in pieces.iter_mut().enumerate() {
-            let level = if surface.class(patch).is_some() { k / 3 + 1 } else { 0 };
-            let at = |coordinate: usize| &scratch.out[coordinate][16 * k..16 * (k + 1)];
-            *piece = placed(of, level, [at(0), at(1), at(2)], origin);
+        let Some(class) = surface.class(patch) else {
+            let net = surface.regular_net(patch);
+            scratch.take(net.iter().map(|point| *point - net[5]));
+            scratch.multiply(&self.regular, 16);
+            return Frame::new(of, 0).place(scratch.coefficients(0), net[5], &mut pieces[0]);
+        };
+        let (points, limit) = surface.irregular_net(patch, &surface.tables()[class]);
+        scratch.take(points.into_iter());
+        let matrix = self.classes[class].as_ref().expect("patches without a matrix have no pieces");
+        scratch.multiply(matrix, 16 * pieces.len());
+        for (level, own) in pieces.chunks_exact_mut(3).enumerate() {
+            let frame = Frame::new(of, level + 1);
+            for (window, piece) in own.iter_mut().enumerate() {
+                frame.place(scratch.coefficients(3 * level + window), limit, piece);
+            }
         }
     }
 }
@@ -137,6 +131,11 @@ impl Scratch {
         }
     }
 
+    /// Those of a piece.
+    fn coefficients(&self, piece: usize) -> [&[f64; 16]; 3] {
+        self.out.each_ref().map(|out| out[16 * piece..].first_chunk().expect("16 rows a piece"))
+    }
+
     fn multiply(&mut self, matrix: &[f64], rows: usize) {
         self.out.iter_mut().for_each(|out| out.resize(rows, 0.0));
         let [x, y, z] = &mut self.out;
@@ -144,27 +143,39 @@ impl Scratch {
     }
 }
 
-/// Coefficients by the window's own parameters, turned into those by the parameters of the ptex face and moved to `origin`.
-fn placed<T: Real>(patch: &Patch, level: usize, own: [&[f64]; 3], origin: DVec3) -> Piece<T> {
-    // The window's u is the face's u, v, -u or -v, 2^(depth + level) times as fast.
-    let rates = patch.scale().map(|scale| scale * f64::from(1u32 << level));
-    let turned = !patch.rotation.is_multiple_of(2);
-    let signs = [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]][usize::from(patch.rotation)];
-    let powers = [0, 1].map(|k| {
-        let rate = signs[k] * rates[k];
-        [1.0, rate, rate * rate, rate * rate * rate]
-    });
-    let mut piece = Piece::default();
-    for (coordinate, own) in own.into_iter().enumerate() {
-        for q in 0..4 {
-            for p in 0..4 {
-                let own = if turned { own[4 * p + q] } else { own[4 * q + p] };
-                let moved = if p + q == 0 { origin[coordinate] } else { 0.0 };
-                piece.0[Piece::<T>::slot(p, q, coordinate)] = T::of(own * (powers[0][p] * powers[1][q]) + moved);
+/// How coefficients by a window's own parameters become those by the parameters of the ptex face: the window's u is the face's u, v,
+/// -u or -v, 2^(depth + level) times as fast.
+struct Frame {
+    /// u and v change places.
+    turned: bool,
+    /// Factor of the coefficient of u^p v^q at `4*p + q`.
+    factors: [f64; 16],
+}
+
+impl Frame {
+    fn new(patch: &Patch, level: usize) -> Self {
+        let rates = patch.scale().map(|scale| scale * f64::from(1u32 << level));
+        let signs = [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]][usize::from(patch.rotation)];
+        let [u, v] = [signs[0] * rates[0], signs[1] * rates[1]].map(|rate| [1.0, rate, rate * rate, rate * rate * rate]);
+        let mut factors = [0.0; 16];
+        for (k, factor) in factors.iter_mut().enumerate() {
+            *factor = u[k / 4] * v[k % 4];
+        }
+        Self { turned: !patch.rotation.is_multiple_of(2), factors }
+    }
+
+    fn place<T: Real>(&self, own: [&[f64; 16]; 3], origin: DVec3, piece: &mut Piece<T>) {
+        for k in 0..16 {
+            // Own coefficients have u fastest.
+            let from = if self.turned { k } else { 4 * (k % 4) + k / 4 };
+            for coordinate in 0..3 {
+                piece.0[3 * k + coordinate] = T::of(own[coordinate][from] * self.factors[k]);
             }
         }
+        for (coordinate, origin) in origin.to_array().into_iter().enumerate() {
+            piece.0[coordinate] = T::of(own[coordinate][0] + origin);
+        }
     }
-    piece
 }
 
 /// The window (from 0: of [`WINDOWS`]) that is piece `piece` of its level, in parameters of the patch: the middle.
@@ -179,6 +190,15 @@ fn regular_matrix() -> Vec<f64> {
         (0..16).map(move |row| POWERS[row % 4][i] * POWERS[row / 4][j])
     };
     (0..16).flat_map(column).collect()
+}
+
+/// Matrices of classes that came up.
+static SHARED: Kept<RingClass, Option<Arc<Vec<f64>>>> = Kept::new();
+
+/// As [`irregular_matrix`]; those of classes that are kept for other meshes are kept too.
+fn shared_matrix(table: &ClassTable) -> Option<Arc<Vec<f64>>> {
+    let build = || irregular_matrix(table).map(Arc::new);
+    if table.is_shared() { Option::clone(&SHARED.get(table.class(), build)) } else { build() }
 }
 
 /// K points to the coefficients of the windows of the levels; `None` if the class keeps no matrices.
