@@ -79,7 +79,7 @@ fn check<T: Real>(mesh: &SubdivMesh, surface: &LimitSurface, tolerances: [f64; 4
     {
         assert!(*worst <= tolerance, "{}, {} bits: {what} {worst:e} off", mesh.name, 8 * size_of::<T>());
     }
-    // The same bits from all threads, and at random, but for what compilers fuse.
+    // The same bits from all threads.
     let mut parallel = Results::new(ALL, samples.len());
     evaluator.evaluate_in_parallel(&samples, parallel.columns());
     let mut each = vec![[[T::default(); 3]; 3]; all.len()];
@@ -88,8 +88,13 @@ fn check<T: Real>(mesh: &SubdivMesh, surface: &LimitSurface, tolerances: [f64; 4
         assert_eq!(results.position(row), parallel.position(row));
         assert_eq!(results.normal(row), parallel.normal(row));
         let [position, du, dv] = each[index as usize];
-        assert_eq!(results.position(row), position, "{}", mesh.name);
-        assert_eq!(results.first(row), Some([du, dv]), "{}", mesh.name);
+        // But for what one rounds and the other does not.
+        let first = results.first(row).expect("asked for");
+        for (batched, single) in [results.position(row), first[0], first[1]].into_iter().zip([position, du, dv]) {
+            let [batched, single] = [batched, single].map(vector);
+            let size = single.length().max(surface.diagonal());
+            assert!(batched.distance(single) <= 4.0 * tolerances[0] * size, "{}: {batched} {single}", mesh.name);
+        }
     }
 }
 

@@ -402,13 +402,17 @@ impl Patches {
     pub fn locate(&self, ptex: u32, uv: [f64; 2]) -> Option<(usize, [f64; 2])> {
         let mut node = self.roots[ptex as usize];
         let [mut u, mut v] = uv;
+        // The binary digits of u and v say which child they lie in; at 1 all are 1. A tree has ten levels at most.
+        let digits = uv.map(|x| ((x * 65536.0) as u32).min(65535));
+        let mut depth = 0;
         let patch = loop {
             match node {
                 Node::Hole => break None,
                 Node::Leaf(patch) => break Some(patch),
                 Node::Strips(strips) => {
                     let Strips { first, count, rotation } = self.strips[strips as usize];
-                    let [_, across] = turn_in(rotation, [u, v]);
+                    let inside = |k: usize| uv[k] * f64::from(1u32 << depth) - f64::from(digits[k] >> (16 - depth));
+                    let [_, across] = turn_in(rotation, [inside(0), inside(1)]);
                     let strip = (1..u32::from(count)).find(|&i| across >= 0.5f64.powi(i as i32));
                     break Some(first + strip.map_or(u32::from(count), |i| i) - 1);
                 }
@@ -418,11 +422,9 @@ impl Patches {
                     node = self.splits[children as usize][child];
                 }
                 Node::Split(children) => {
-                    let [right, up] = [u >= 0.5, v >= 0.5];
-                    let corner = [[0, 3], [1, 2]][usize::from(right)][usize::from(up)];
-                    u = 2.0 * u - f64::from(u8::from(right));
-                    v = 2.0 * v - f64::from(u8::from(up));
-                    node = self.splits[children as usize][corner];
+                    depth += 1;
+                    let [right, up] = digits.map(|digits| (digits >> (16 - depth)) as usize & 1);
+                    node = self.splits[children as usize][[[0, 3], [1, 2]][right][up]];
                 }
             }
         }?;

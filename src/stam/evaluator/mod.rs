@@ -251,23 +251,15 @@ impl<T: Real> WithSimd for Each<'_, T> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Evaluator { surface, plan, pieces } = self.evaluator;
-        let Self { samples, out, .. } = self;
-        // Found first, some at a time: the search branches, and what follows it fetches memory for many samples at once.
-        let mut places = [Place::Hole; 32];
-        for (samples, out) in samples.chunks(places.len()).zip(out.chunks_mut(places.len())) {
-            for (&(ptex, u, v), place) in samples.iter().zip(&mut places) {
-                *place = Place::new(surface, plan, ptex, [u.to_f64(), v.to_f64()]);
-            }
-            for (out, place) in out.iter_mut().zip(&places) {
-                *out = match *place {
-                    Place::Piece(piece, [u, v]) => single(simd, &pieces[piece as usize], T::of(u), T::of(v)),
-                    Place::Patch(patch, uv) => {
-                        let jet = surface.patches()[patch as usize].jet_to_ptex(surface.evaluate(patch as usize, uv));
-                        [jet.position, jet.du, jet.dv].map(|x| x.to_array().map(T::of))
-                    }
-                    Place::Hole => [[T::default(); 3]; 3],
-                };
-            }
+        for (&(ptex, u, v), out) in self.samples.iter().zip(self.out) {
+            *out = match Place::new(surface, plan, ptex, [u.to_f64(), v.to_f64()]) {
+                Place::Piece(piece, [u, v]) => single(simd, &pieces[piece as usize], T::of(u), T::of(v)),
+                Place::Patch(patch, uv) => {
+                    let jet = surface.patches()[patch as usize].jet_to_ptex(surface.evaluate(patch as usize, uv));
+                    [jet.position, jet.du, jet.dv].map(|x| x.to_array().map(T::of))
+                }
+                Place::Hole => [[T::default(); 3]; 3],
+            };
         }
     }
 }

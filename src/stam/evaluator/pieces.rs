@@ -165,12 +165,14 @@ impl Frame {
     }
 
     fn place<T: Real>(&self, own: [&[f64; 16]; 3], origin: DVec3, piece: &mut Piece<T>) {
-        for k in 0..16 {
-            // Own coefficients have u fastest.
-            let from = if self.turned { k } else { 4 * (k % 4) + k / 4 };
+        let mut put = |k: usize, from: usize| {
             for coordinate in 0..3 {
                 piece.0[3 * k + coordinate] = T::of(own[coordinate][from] * self.factors[k]);
             }
+        };
+        match self.turned {
+            false => (0..16).for_each(|k| put(k, k)),
+            true => (0..16).for_each(|k| put(k, 4 * (k % 4) + k / 4)),
         }
         for (coordinate, origin) in origin.to_array().into_iter().enumerate() {
             piece.0[coordinate] = T::of(own[coordinate][0] + origin);
@@ -183,11 +185,11 @@ pub fn middle(level: usize, window: usize) -> [f64; 2] {
     WINDOWS[window].map(|i| (i as f64 + 0.5) / f64::from(1u32 << level))
 }
 
-/// 16 points to 16 coefficients, that of u^p v^q at `4*q + p`; column by column.
+/// 16 points to 16 coefficients, that of u^p v^q at `4*p + q`; column by column.
 fn regular_matrix() -> Vec<f64> {
     let column = |point: usize| {
         let (i, j) = (point % 4, point / 4);
-        (0..16).map(move |row| POWERS[row % 4][i] * POWERS[row / 4][j])
+        (0..16).map(move |row| POWERS[row / 4][i] * POWERS[row % 4][j])
     };
     (0..16).flat_map(column).collect()
 }

@@ -131,51 +131,33 @@ fn horner<S: Simd, T: Real, const ORDER: usize>(
     [value, first, T::add(simd, second, second)]
 }
 
-/// Evaluates polynomials at one place each, coordinates side by side in a vector: position, du and dv.
+/// Evaluates a polynomial at one place: position, du and dv. The loops over what lies side by side become vectors.
 #[inline(always)]
-pub fn single<S: Simd, T: Real>(simd: S, piece: &Piece<T>, u: T, v: T) -> [[T; 3]; 3] {
-    let lanes = T::count::<S>();
-    // Rows first: u runs over all four at a time.
+pub fn single<S: Simd, T: Real>(_: S, piece: &Piece<T>, u: T, v: T) -> [[T; 3]; 3] {
+    // u first, which runs over all four powers of v at a time.
     let (mut values, mut slopes) = ([T::default(); 12], [T::default(); 12]);
-    let t = T::splat(simd, u);
-    let mut at = 0;
-    while at < 12 {
-        let end = (at + lanes).min(12);
-        let c = [
-            T::load(simd, &piece.0[at..end]),
-            T::load(simd, &piece.0[12 + at..12 + end]),
-            T::load(simd, &piece.0[24 + at..24 + end]),
-            T::load(simd, &piece.0[36 + at..36 + end]),
-        ];
-        let [value, slope, _] = horner::<S, T, 1>(simd, c, t);
-        T::store(simd, &mut values[at..end], value);
-        T::store(simd, &mut slopes[at..end], slope);
-        at = end;
+    let mut i = 0;
+    while i < 12 {
+        let [a, b, c, d] = [piece.0[i], piece.0[12 + i], piece.0[24 + i], piece.0[36 + i]];
+        let value_2 = T::fused::<S>(d, u, c);
+        let value_1 = T::fused::<S>(value_2, u, b);
+        values[i] = T::fused::<S>(value_1, u, a);
+        slopes[i] = T::fused::<S>(T::fused::<S>(d, u, value_2), u, value_1);
+        i += 1;
     }
-    let t = T::splat(simd, v);
     let mut out = [[T::default(); 3]; 3];
-    let mut at = 0;
-    while at < 3 {
-        let end = (at + lanes).min(3);
-        let [value, dv, _] = horner::<S, T, 1>(simd, rows(simd, &values, at, end), t);
-        let [du, ..] = horner::<S, T, 0>(simd, rows(simd, &slopes, at, end), t);
-        T::store(simd, &mut out[0][at..end], value);
-        T::store(simd, &mut out[1][at..end], du);
-        T::store(simd, &mut out[2][at..end], dv);
-        at = end;
+    let mut c = 0;
+    while c < 3 {
+        let value_2 = T::fused::<S>(values[9 + c], v, values[6 + c]);
+        let value_1 = T::fused::<S>(value_2, v, values[3 + c]);
+        let slope_2 = T::fused::<S>(slopes[9 + c], v, slopes[6 + c]);
+        let slope_1 = T::fused::<S>(slope_2, v, slopes[3 + c]);
+        out[0][c] = T::fused::<S>(value_1, v, values[c]);
+        out[1][c] = T::fused::<S>(slope_1, v, slopes[c]);
+        out[2][c] = T::fused::<S>(T::fused::<S>(values[9 + c], v, value_2), v, value_1);
+        c += 1;
     }
     out
-}
-
-/// Coordinates `at..end` of the four rows.
-#[inline(always)]
-fn rows<S: Simd, T: Real>(simd: S, from: &[T; 12], at: usize, end: usize) -> [T::Vector<S>; 4] {
-    [
-        T::load(simd, &from[at..end]),
-        T::load(simd, &from[3 + at..3 + end]),
-        T::load(simd, &from[6 + at..6 + end]),
-        T::load(simd, &from[9 + at..9 + end]),
-    ]
 }
 
 /// A dense matrix times points: `out[c][r] = sum of matrix[k * rows + r] * points[c][k]` over k.

@@ -34,17 +34,21 @@ mod sealed {
         fn load<S: Simd>(simd: S, from: &[Self]) -> Self::Vector<S>;
         /// As many as the slice takes.
         fn store<S: Simd>(simd: S, to: &mut [Self], x: Self::Vector<S>);
+        /// a b + c of single numbers, rounded once where vectors do so.
+        fn fused<S: Simd>(a: Self, b: Self, c: Self) -> Self;
     }
 }
 
 macro_rules! real {
     ($type:ty, $vector:ident, $lanes:ident, $splat:ident, $add:ident, $sub:ident, $mul:ident, $div:ident, $sqrt:ident,
-     $mul_add:ident, $load:ident, $store:ident) => {
+     $mul_add:ident, $load:ident, $store:ident, $whole:ident, $whole_mut:ident) => {
         impl Real for $type {
+            #[inline(always)]
             fn of(x: f64) -> Self {
                 x as $type
             }
 
+            #[inline(always)]
             fn to_f64(self) -> f64 {
                 f64::from(self)
             }
@@ -87,11 +91,25 @@ macro_rules! real {
             }
             #[inline(always)]
             fn load<S: Simd>(simd: S, from: &[Self]) -> S::$vector {
-                simd.$load(from)
+                // Whole vectors need no mask.
+                match S::$whole(from) {
+                    ([vector, ..], _) => *vector,
+                    _ => simd.$load(from),
+                }
             }
             #[inline(always)]
             fn store<S: Simd>(simd: S, to: &mut [Self], x: S::$vector) {
-                simd.$store(to, x)
+                if to.len() < S::$lanes {
+                    return simd.$store(to, x);
+                }
+                if let ([vector, ..], _) = S::$whole_mut(to) {
+                    *vector = x;
+                }
+            }
+            #[inline(always)]
+            fn fused<S: Simd>(a: Self, b: Self, c: Self) -> Self {
+                // Vectors of more than 128 bits come with instructions for it; elsewhere it would be a call.
+                if S::F32_LANES > 4 { a.mul_add(b, c) } else { a * b + c }
             }
         }
     };
@@ -109,7 +127,9 @@ real!(
     sqrt_f32s,
     mul_add_e_f32s,
     partial_load_f32s,
-    partial_store_f32s
+    partial_store_f32s,
+    as_simd_f32s,
+    as_mut_simd_f32s
 );
 real!(
     f64,
@@ -123,7 +143,9 @@ real!(
     sqrt_f64s,
     mul_add_e_f64s,
     partial_load_f64s,
-    partial_store_f64s
+    partial_store_f64s,
+    as_simd_f64s,
+    as_mut_simd_f64s
 );
 
 /// Does it with the widest vectors that this processor has: AVX-512, AVX2 with FMA, or those of 128 bits that every one has.
