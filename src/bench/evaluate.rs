@@ -38,11 +38,13 @@ pub(super) trait Peered: Real {
     fn bfr(mesh: &SubdivMesh) -> Result<Box<dyn FnMut(&PeerSamples<Self>, &mut [[[Self; 3]; 3]])>, BenchError>;
     /// Osd, in `f32` alone: the samples are placed here.
     fn osd(mesh: &SubdivMesh, samples: &[(u32, Self, Self)]) -> Result<Option<Box<dyn FnMut()>>, BenchError>;
+    /// Embree, in `f32` alone and where it is built in.
+    fn embree(mesh: &SubdivMesh, samples: &[(u32, Self, Self)]) -> Result<Option<Box<dyn FnMut()>>, BenchError>;
     const NAME: &'static str;
 }
 
 macro_rules! peered {
-    ($type:ty, $name:literal, $osd:expr) => {
+    ($type:ty, $name:literal, $osd:expr, $embree:expr) => {
         impl Peered for $type {
             fn bfr(mesh: &SubdivMesh) -> Result<Box<dyn FnMut(&PeerSamples<Self>, &mut [[[Self; 3]; 3]])>, BenchError> {
                 let peer = BfrPeer::<$type>::new(mesh, Bfr::DEFAULT_LEVELS)?;
@@ -53,13 +55,34 @@ macro_rules! peered {
                 $osd(mesh, samples)
             }
 
+            fn embree(
+                mesh: &SubdivMesh,
+                samples: &[(u32, Self, Self)],
+            ) -> Result<Option<Box<dyn FnMut()>>, BenchError> {
+                $embree(mesh, samples)
+            }
+
             const NAME: &'static str = $name;
         }
     };
 }
 
-peered!(f32, "evaluate_batched", osd_placed);
-peered!(f64, "evaluate_batched_f64", |_, _| Ok(None));
+peered!(f32, "evaluate_batched", osd_placed, embree_placed);
+peered!(f64, "evaluate_batched_f64", |_, _| Ok(None), |_, _| Ok(None));
+
+#[cfg(feature = "peers")]
+fn embree_placed(mesh: &SubdivMesh, samples: &[(u32, f32, f32)]) -> Result<Option<Box<dyn FnMut()>>, BenchError> {
+    use crate::osd::{EmbreeSamples, EmbreeSubdivision};
+    let (embree, samples) = (EmbreeSubdivision::new(mesh)?, EmbreeSamples::new(mesh, samples));
+    let mut out = vec![0.0f32; samples.room()];
+    Ok(Some(Box::new(move || embree.evaluate(&samples, black_box(&mut out)).expect("it evaluated before"))))
+}
+
+#[cfg(not(feature = "peers"))]
+fn embree_placed(_: &SubdivMesh, _: &[(u32, f32, f32)]) -> Result<Option<Box<dyn FnMut()>>, BenchError> {
+    Ok(None)
+}
+
 
 fn osd_placed(mesh: &SubdivMesh, samples: &[(u32, f32, f32)]) -> Result<Option<Box<dyn FnMut()>>, BenchError> {
     let mut osd = OsdPeer::new(mesh, MAX_ISOLATION)?;
@@ -81,6 +104,9 @@ pub(super) fn batched<T: Peered>(mesh: &SubdivMesh, effort: Effort) -> Result<Ve
         .against("bfr", || bfr(&peer_samples, black_box(&mut jets)));
     if let Some(osd) = T::osd(mesh, &samples)? {
         contest = contest.against("osd", osd);
+    }
+    if let Some(embree) = T::embree(mesh, &samples)? {
+        contest = contest.against("embree", embree);
     }
     contest = contest.floor(|| untouched.fill(black_box(T::default())));
     let per_sample = 1e9 / count as f64;

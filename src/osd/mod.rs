@@ -5,6 +5,8 @@
 //! [`SubdivMesh::validate`](crate::mesh::SubdivMesh::validate) on its way in.
 #![allow(unsafe_code)] // the one room where the crate's `deny` is lifted
 
+#[cfg(feature = "peers")]
+mod embree;
 mod patches;
 mod peers;
 mod raw;
@@ -12,6 +14,8 @@ mod reference;
 mod refiner;
 mod stencils;
 
+#[cfg(feature = "peers")]
+pub use embree::{EmbreeCamera, EmbreeSamples, EmbreeSubdivision, EmbreeTriangles};
 pub use patches::{EndCap, FarNet, FarPatch, Isolation};
 pub use peers::{BfrPeer, OsdPeer, PeerSamples};
 pub use reference::{Answer, Bfr, Far, Location, Reference, ReferenceJet};

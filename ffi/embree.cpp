@@ -1,0 +1,184 @@
+// Embree 3.13: rtcInterpolateN on a subdivision mesh, rtcIntersect1 on triangles.
+#include "embree.h"
+#include "guard.hpp"
+
+#include <embree3/rtcore.h>
+
+#include <atomic>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <thread>
+#include <vector>
+
+using namespace catoptric;
+
+namespace {
+
+struct Device {
+    RTCDevice device;
+    RTCScene scene = nullptr;
+    RTCGeometry geometry = nullptr;
+
+    explicit Device(int threads)
+        : device(rtcNewDevice(("threads=" + std::to_string(threads)).c_str())) {
+        if (!device) throw std::runtime_error("Embree gives no device");
+    }
+    Device(Device const &) = delete;
+    ~Device() {
+        if (geometry) rtcReleaseGeometry(geometry);
+        if (scene) rtcReleaseScene(scene);
+        rtcReleaseDevice(device);
+    }
+
+    void check() const {
+        if (rtcGetDeviceError(device) != RTC_ERROR_NONE) throw std::runtime_error("Embree reports an error");
+    }
+
+    // Room for an array that Embree owns, filled from `source`.
+    template <class T>
+    void copy(RTCBufferType type, RTCFormat format, std::size_t width, T const *source, std::size_t count) {
+        if (count == 0) return;
+        void *to = rtcSetNewGeometryBuffer(geometry, type, 0, format, width * sizeof(T), count);
+        check();
+        std::memcpy(to, source, width * count * sizeof(T));
+    }
+
+    void commit() {
+        rtcCommitGeometry(geometry);
+        scene = rtcNewScene(device);
+        rtcAttachGeometry(scene, geometry);
+        rtcCommitScene(scene);
+        check();
+    }
+};
+
+RTCSubdivisionMode mode_of(osd_boundary boundary) {
+    switch (boundary) {
+    case OSD_BOUNDARY_NONE: return RTC_SUBDIVISION_MODE_NO_BOUNDARY;
+    case OSD_BOUNDARY_EDGE_ONLY: return RTC_SUBDIVISION_MODE_SMOOTH_BOUNDARY;
+    case OSD_BOUNDARY_EDGE_AND_CORNER: return RTC_SUBDIVISION_MODE_PIN_CORNERS;
+    }
+    throw std::invalid_argument("unknown boundary rule");
+}
+
+} // namespace
+
+struct emb_subdivision : Device {
+    using Device::Device;
+};
+struct emb_triangles : Device {
+    using Device::Device;
+};
+
+extern "C" {
+
+osd_status emb_subdivision_create(const osd_mesh *mesh, const double *points, emb_subdivision **out) {
+    return create(out, [&] {
+        auto made = std::make_unique<emb_subdivision>(1);
+        made->geometry = rtcNewGeometry(made->device, RTC_GEOMETRY_TYPE_SUBDIVISION);
+        std::vector<float> const single(points, points + 3 * std::size_t(mesh->vertex_count));
+        std::size_t corners = 0;
+        for (int32_t face = 0; face < mesh->face_count; ++face) corners += std::size_t(mesh->face_sizes[face]);
+        made->copy(RTC_BUFFER_TYPE_FACE, RTC_FORMAT_UINT, 1, mesh->face_sizes, std::size_t(mesh->face_count));
+        made->copy(RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT, 1, mesh->face_vertices, corners);
+        made->copy(RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, 3, single.data(), std::size_t(mesh->vertex_count));
+        made->copy(RTC_BUFFER_TYPE_EDGE_CREASE_INDEX, RTC_FORMAT_UINT2, 2, mesh->crease_vertices,
+                   std::size_t(mesh->crease_count));
+        made->copy(RTC_BUFFER_TYPE_EDGE_CREASE_WEIGHT, RTC_FORMAT_FLOAT, 1, mesh->crease_sharpness,
+                   std::size_t(mesh->crease_count));
+        made->copy(RTC_BUFFER_TYPE_VERTEX_CREASE_INDEX, RTC_FORMAT_UINT, 1, mesh->corner_vertices,
+                   std::size_t(mesh->corner_count));
+        made->copy(RTC_BUFFER_TYPE_VERTEX_CREASE_WEIGHT, RTC_FORMAT_FLOAT, 1, mesh->corner_sharpness,
+                   std::size_t(mesh->corner_count));
+        made->copy(RTC_BUFFER_TYPE_HOLE, RTC_FORMAT_UINT, 1, mesh->holes, std::size_t(mesh->hole_count));
+        rtcSetGeometrySubdivisionMode(made->geometry, 0, mode_of(mesh->boundary));
+        made->commit();
+        return made;
+    });
+}
+
+void emb_subdivision_destroy(emb_subdivision *subdivision) { delete subdivision; }
+
+osd_status emb_subdivision_evaluate(const emb_subdivision *subdivision, int32_t count, const uint32_t *faces,
+                                    const float *u, const float *v, float *out) {
+    return guard([&] {
+        RTCInterpolateNArguments arguments{};
+        arguments.geometry = subdivision->geometry;
+        arguments.bufferType = RTC_BUFFER_TYPE_VERTEX;
+        arguments.valueCount = 3;
+        for (int32_t first = 0; first < count; first += EMB_BATCH, out += 9 * EMB_BATCH) {
+            arguments.primIDs = faces + first;
+            arguments.u = u + first;
+            arguments.v = v + first;
+            arguments.N = unsigned(std::min<int32_t>(EMB_BATCH, count - first));
+            arguments.P = out;
+            arguments.dPdu = out + 3 * arguments.N;
+            arguments.dPdv = out + 6 * arguments.N;
+            rtcInterpolateN(&arguments);
+        }
+        subdivision->check();
+    });
+}
+
+osd_status emb_triangles_create(int32_t point_count, const float *points, int32_t triangle_count,
+                                const uint32_t *indices, int32_t threads, emb_triangles **out) {
+    return create(out, [&] {
+        auto made = std::make_unique<emb_triangles>(threads);
+        made->geometry = rtcNewGeometry(made->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+        made->copy(RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, 3, points, std::size_t(point_count));
+        made->copy(RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, 3, indices, std::size_t(triangle_count));
+        made->commit();
+        return made;
+    });
+}
+
+void emb_triangles_destroy(emb_triangles *triangles) { delete triangles; }
+
+osd_status emb_triangles_trace(const emb_triangles *triangles, const emb_camera *camera, int32_t threads,
+                               float *depths, int64_t *hits) {
+    return guard([&] {
+        constexpr int32_t TILE = 16; // rays of a tile are neighbours
+        int32_t const columns = (camera->width + TILE - 1) / TILE, rows = (camera->height + TILE - 1) / TILE;
+        std::atomic<int32_t> next{0};
+        std::atomic<int64_t> met{0};
+        auto const work = [&] {
+            RTCIntersectContext context;
+            rtcInitIntersectContext(&context);
+            context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+            int64_t own = 0;
+            for (int32_t tile; (tile = next++) < columns * rows;) {
+                int32_t const x0 = tile % columns * TILE, y0 = tile / columns * TILE;
+                for (int32_t y = y0; y < std::min(y0 + TILE, camera->height); ++y)
+                    for (int32_t x = x0; x < std::min(x0 + TILE, camera->width); ++x) {
+                        RTCRayHit ray{};
+                        float direction[3];
+                        for (int k = 0; k < 3; ++k)
+                            direction[k] = camera->first[k] + float(x) * camera->right[k] +
+                                           float(y) * camera->down[k] - camera->eye[k];
+                        ray.ray.org_x = camera->eye[0];
+                        ray.ray.org_y = camera->eye[1];
+                        ray.ray.org_z = camera->eye[2];
+                        ray.ray.dir_x = direction[0];
+                        ray.ray.dir_y = direction[1];
+                        ray.ray.dir_z = direction[2];
+                        ray.ray.tfar = std::numeric_limits<float>::infinity();
+                        ray.ray.mask = ~0u;
+                        ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+                        rtcIntersect1(triangles->scene, &context, &ray);
+                        depths[std::size_t(y) * std::size_t(camera->width) + std::size_t(x)] = ray.ray.tfar;
+                        own += ray.hit.geomID != RTC_INVALID_GEOMETRY_ID;
+                    }
+            }
+            met += own;
+        };
+        std::vector<std::thread> others;
+        for (int32_t i = 1; i < threads; ++i) others.emplace_back(work);
+        work();
+        for (std::thread &other : others) other.join();
+        *hits = met;
+        triangles->check();
+    });
+}
+
+} // extern "C"
