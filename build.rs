@@ -5,7 +5,15 @@ use std::{env, path::PathBuf};
 const SHIM: [&str; 4] = ["ffi/refiner.cpp", "ffi/reference.cpp", "ffi/stencils.cpp", "ffi/peers.cpp"];
 
 fn main() {
-    for file in SHIM.iter().chain(&["ffi/osd.h", "ffi/embree.h", "ffi/embree.cpp", "ffi/bfr.hpp", "ffi/guard.hpp", "ffi/table.hpp", "build.rs"]) {
+    for file in SHIM.iter().chain(&[
+        "ffi/osd.h",
+        "ffi/embree.h",
+        "ffi/embree.cpp",
+        "ffi/bfr.hpp",
+        "ffi/guard.hpp",
+        "ffi/table.hpp",
+        "build.rs",
+    ]) {
         println!("cargo:rerun-if-changed={file}");
     }
     let mut shim = cc::Build::new();

@@ -22,7 +22,9 @@ fn difference(jet: &[[f64; 3]; 3], reference: &ReferenceJet, doubled: f64) -> f6
 #[test]
 fn bfr_answers_what_the_reference_does() {
     for mesh in meshes() {
-        let (Ok(mut reference), Ok(peer)) = (Bfr::new(&mesh, (2, 6)), BfrPeer::<f64>::new(&mesh, (2, 6))) else { continue };
+        let (Ok(mut reference), Ok(peer)) = (Bfr::new(&mesh, (2, 6)), BfrPeer::<f64>::new(&mesh, (2, 6))) else {
+            continue;
+        };
         let places = places(&mesh);
         let mut jets = vec![[[0.0; 3]; 3]; places.len()];
         peer.evaluate(&PeerSamples::new(&places, mesh.ptex_count()), &mut jets).expect("an answer");
@@ -37,11 +39,14 @@ fn bfr_answers_what_the_reference_does() {
 #[test]
 fn osd_answers_what_far_does() {
     for mesh in meshes() {
-        let (Ok(mut far), Ok(mut peer)) = (Far::new(&mesh, MAX_ISOLATION), OsdPeer::new(&mesh, MAX_ISOLATION)) else { continue };
+        let (Ok(mut far), Ok(mut peer)) = (Far::new(&mesh, MAX_ISOLATION), OsdPeer::new(&mesh, MAX_ISOLATION)) else {
+            continue;
+        };
         let references = far.evaluate(&places(&mesh)).expect("an answer");
         // Those in holes are left out.
         let answered = places(&mesh).into_iter().zip(references).filter(|(_, jet)| jet.answer != Answer::None);
-        let (places, references): (Vec<_>, Vec<_>) = answered.map(|((face, u, v), jet)| ((face, u as f32, v as f32), jet)).unzip();
+        let (places, references): (Vec<_>, Vec<_>) =
+            answered.map(|((face, u, v), jet)| ((face, u as f32, v as f32), jet)).unzip();
         peer.place(&PeerSamples::new(&places, mesh.ptex_count())).expect("a place");
         let mut jets = vec![[[0.0f32; 3]; 3]; places.len()];
         peer.evaluate(&mut jets).expect("an answer");
@@ -75,7 +80,7 @@ fn osd_follows_control_points() {
 /// Every row that needs no adapter has figures, and floors are below what is measured against them.
 #[test]
 fn rows_are_measured() {
-    let works = Work::ALL.into_iter().filter(|work| *work != Work::Tables);
+    let works = Work::ALL.into_iter().filter(|work| !matches!(work, Work::Tables | Work::Frame));
     for work in works {
         let rows = bench::measure(work, &sample(), Effort::QUICK, None).expect("figures");
         assert!(!rows.is_empty());
@@ -83,4 +88,46 @@ fn rows_are_measured() {
             assert!(row.catoptric > 0.0 && row.peers["bfr"].or(row.peers["osd"]).is_some_and(|x| x > 0.0), "{row:?}");
         }
     }
+}
+
+/// The tessellation that frames are measured against shows the same surface in the same place, with stripes on it.
+#[test]
+fn the_tessellation_covers_what_the_limit_does() {
+    use catoptric::field::Scout;
+    use catoptric::gpu::{Gpu, NO_PATCH, View};
+    use catoptric::stam::LimitSurface;
+    const PARTS: u32 = 16;
+    let surface = LimitSurface::new(&sample()).expect("a surface");
+    let scout = Scout::new(&surface).expect("it has faces");
+    let camera = scout.camera([256, 256], DVec3::Z);
+    let view = View { samples: 1, ..View::new(camera, scout.light(&camera)) };
+    let gpu = Gpu::new().expect("an adapter");
+    let (mut corners, mut indices) = (Vec::new(), Vec::new());
+    for face in 0..surface.ptex_count() as u32 {
+        let first = corners.len() as u32;
+        for k in 0..(PARTS + 1) * (PARTS + 1) {
+            let uv = [k % (PARTS + 1), k / (PARTS + 1)].map(|k| f64::from(k) / f64::from(PARTS));
+            let (_, jet) = surface.evaluate_ptex(face, uv).expect("no hole");
+            corners.push([jet.position, jet.normal].map(|x| x.as_vec3().to_array()));
+        }
+        for k in 0..PARTS * PARTS {
+            let a = first + k / PARTS * (PARTS + 1) + k % PARTS;
+            indices.extend([a, a + 1, a + PARTS + 2, a, a + PARTS + 2, a + PARTS + 1]);
+        }
+    }
+    let triangles = gpu.tessellate(&corners, &indices, &view).expect("room for it");
+    gpu.draw_tessellated(&triangles).expect("it is drawn");
+    let picture = gpu.read_tessellated(&triangles).expect("a picture");
+    let seen = gpu.inspect(&gpu.upload(&surface).expect("room"), &view).expect("a picture");
+    // Stripes are half dark, so what is light must be covered, and much of what is covered must be light.
+    let (mut light, mut outside, mut covered) = (0, 0, 0);
+    for (pixel, patch) in picture.iter().zip(&seen.patch) {
+        covered += usize::from(*patch != NO_PATCH);
+        if pixel[0] > 127 {
+            light += 1;
+            outside += usize::from(*patch == NO_PATCH);
+        }
+    }
+    assert!(covered > 10_000 && light > covered / 4 && light < covered * 3 / 4, "{light} of {covered}");
+    assert!(outside * 200 < light, "{outside} light pixels of {light} show no surface");
 }

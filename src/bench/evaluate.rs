@@ -3,8 +3,8 @@
 use super::{BenchError, Contest, Effort, Row};
 use crate::mesh::SubdivMesh;
 use crate::osd::{Bfr, BfrPeer, MAX_ISOLATION, OsdPeer, PeerSamples};
-use crate::statistics::scatter;
 use crate::stam::{Evaluator, LimitSurface, Real, Results, Wanted};
+use crate::statistics::scatter;
 use std::hint::black_box;
 
 /// Samples of a face where they are grouped.
@@ -82,7 +82,6 @@ fn embree_placed(mesh: &SubdivMesh, samples: &[(u32, f32, f32)]) -> Result<Optio
 fn embree_placed(_: &SubdivMesh, _: &[(u32, f32, f32)]) -> Result<Option<Box<dyn FnMut()>>, BenchError> {
     Ok(None)
 }
-
 
 fn osd_placed(mesh: &SubdivMesh, samples: &[(u32, f32, f32)]) -> Result<Option<Box<dyn FnMut()>>, BenchError> {
     let mut osd = OsdPeer::new(mesh, MAX_ISOLATION)?;

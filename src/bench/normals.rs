@@ -4,8 +4,8 @@ use super::evaluate::Peered;
 use super::{BenchError, Effort, Row};
 use crate::mesh::SubdivMesh;
 use crate::osd::{MAX_ISOLATION, OsdPeer, PeerSamples};
-use crate::statistics::{angle_deg, scatter};
 use crate::stam::{Evaluator, LimitSurface, Results, Wanted};
+use crate::statistics::{angle_deg, scatter};
 use glam::DVec3;
 use std::collections::BTreeMap;
 
@@ -28,7 +28,11 @@ pub(super) fn errors(mesh: &SubdivMesh, effort: Effort) -> Result<Vec<Row>, Benc
             jet.normal
         })
         .collect();
-    OFFSETS.into_iter().map(|offset| at(mesh, offset, &samples, &normals)).collect::<Result<Vec<_>, _>>().map(|rows| rows.concat())
+    OFFSETS
+        .into_iter()
+        .map(|offset| at(mesh, offset, &samples, &normals))
+        .collect::<Result<Vec<_>, _>>()
+        .map(|rows| rows.concat())
 }
 
 /// The value that this part of them does not exceed (nearest rank), of all but NaN.

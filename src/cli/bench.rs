@@ -73,7 +73,11 @@ fn text(report: &Report<'_>) -> String {
         report.mesh,
         report.faces
     );
-    let _ = writeln!(out, "{:<32} {:>9} {:>10}  {:>10}  peers, and their ratios to it", "row", "unit", "catoptric", "floor");
+    let _ = writeln!(
+        out,
+        "{:<32} {:>9} {:>10}  {:>10}  peers, and their ratios to it",
+        "row", "unit", "catoptric", "floor"
+    );
     for row in &report.results {
         let floor = row.floor.map_or("-".to_owned(), short);
         let _ = write!(out, "{:<32} {:>9} {:>10}  {floor:>10} ", row.name, row.unit, short(row.catoptric));
@@ -81,7 +85,11 @@ fn text(report: &Report<'_>) -> String {
             let _ = write!(out, " {peer} {}", short(figure));
             if let Some([low, high]) = row.ratios.get(peer) {
                 let ends = [low, high].map(|ratio| short(*ratio));
-                let _ = if ends[0] == ends[1] { write!(out, " ({}x)", ends[0]) } else { write!(out, " ({}..{}x)", ends[0], ends[1]) };
+                let _ = if ends[0] == ends[1] {
+                    write!(out, " ({}x)", ends[0])
+                } else {
+                    write!(out, " ({}..{}x)", ends[0], ends[1])
+                };
             }
         }
         out.push('\n');

@@ -26,6 +26,7 @@ pub mod records;
 mod scenes;
 pub mod shader;
 pub mod tables;
+mod tessellated;
 mod view;
 
 pub use crate::field::{MAX_FOV, Palette};
@@ -33,6 +34,7 @@ pub use certificate::{Certificate, State, Summary};
 pub use device::AdapterChoice;
 pub use frame::{Frame, LinearFrame, NO_PATCH, SurfaceImage, Timings};
 pub use tables::{PatchSource, TableLayout, Tables};
+pub use tessellated::{Corner, Tessellated};
 pub use view::{MAX_ENLARGE, MAX_POINTS_SIDE, MAX_PROXY_LEVEL, MAX_SAMPLES, Pipeline, Stage, View};
 
 use crate::stam::{Jet, LimitSurface};

@@ -18,7 +18,8 @@ impl EmbreeSamples {
     /// # Panics
     /// A ptex face is out of range.
     pub fn new(mesh: &SubdivMesh, samples: &[(u32, f32, f32)]) -> Self {
-        let ptex: Vec<(u32, Option<u32>)> = (0..).zip(&mesh.face_sizes).flat_map(|(face, &size)| of_face(face, size)).collect();
+        let ptex: Vec<(u32, Option<u32>)> =
+            (0..).zip(&mesh.face_sizes).flat_map(|(face, &size)| of_face(face, size)).collect();
         let mut out = Self::default();
         for &(at, u, v) in samples {
             let (face, quadrant) = ptex[at as usize];
@@ -64,9 +65,7 @@ impl EmbreeSubdivision {
         let descriptor = Descriptor::new(mesh)?;
         let mut handle = std::ptr::null_mut();
         // SAFETY: the descriptor outlives the call, which copies it; its indices are validated.
-        check(unsafe {
-            raw::emb_subdivision_create(&descriptor.as_raw(), descriptor.points.as_ptr(), &mut handle)
-        })?;
+        check(unsafe { raw::emb_subdivision_create(&descriptor.as_raw(), descriptor.points.as_ptr(), &mut handle) })?;
         Ok(Self { handle: NonNull::new(handle).expect("a mesh comes with status OK"), faces: mesh.face_count() })
     }
 
@@ -111,7 +110,8 @@ impl EmbreeTriangles {
     /// An index is out of range.
     pub fn new(points: &[[f32; 3]], triangles: &[[u32; 3]], threads: u32) -> Result<Self, Error> {
         assert!(triangles.as_flattened().iter().all(|&i| (i as usize) < points.len()), "indices are in range");
-        let (count, triangle_count) = (int(points.len(), "number of points")?, int(triangles.len(), "number of triangles")?);
+        let (count, triangle_count) =
+            (int(points.len(), "number of points")?, int(triangles.len(), "number of triangles")?);
         let (points, indices) = (points.as_ptr().cast(), triangles.as_ptr().cast());
         let mut handle = std::ptr::null_mut();
         // SAFETY: the arrays are sized by their counts, indices are in range, and the call copies them.

@@ -124,9 +124,7 @@ impl OsdPeer {
         let level = isolation.min(i32::MAX as u32) as i32;
         let mut handle = std::ptr::null_mut();
         // SAFETY: the descriptor outlives the call, which copies it; its indices are validated.
-        check(unsafe {
-            raw::osd_cpu_create(&descriptor.as_raw(), descriptor.points.as_ptr(), level, &mut handle)
-        })?;
+        check(unsafe { raw::osd_cpu_create(&descriptor.as_raw(), descriptor.points.as_ptr(), level, &mut handle) })?;
         let handle = NonNull::new(handle).expect("a peer comes with status OK");
         Ok(Self { handle, vertices: mesh.points.len() })
     }

@@ -92,7 +92,13 @@ impl Plan {
         });
     }
 
-    fn fill_patch<T: Real>(&self, surface: &LimitSurface, patch: usize, scratch: &mut Scratch, pieces: &mut [Piece<T>]) {
+    fn fill_patch<T: Real>(
+        &self,
+        surface: &LimitSurface,
+        patch: usize,
+        scratch: &mut Scratch,
+        pieces: &mut [Piece<T>],
+    ) {
         if pieces.is_empty() {
             return;
         }
@@ -156,7 +162,8 @@ impl Frame {
     fn new(patch: &Patch, level: usize) -> Self {
         let rates = patch.scale().map(|scale| scale * f64::from(1u32 << level));
         let signs = [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]][usize::from(patch.rotation)];
-        let [u, v] = [signs[0] * rates[0], signs[1] * rates[1]].map(|rate| [1.0, rate, rate * rate, rate * rate * rate]);
+        let [u, v] =
+            [signs[0] * rates[0], signs[1] * rates[1]].map(|rate| [1.0, rate, rate * rate, rate * rate * rate]);
         let mut factors = [0.0; 16];
         for (k, factor) in factors.iter_mut().enumerate() {
             *factor = u[k / 4] * v[k % 4];

@@ -111,11 +111,7 @@ fn row<S: Simd, T: Real>(simd: S, piece: &Piece<T>, q: usize, coordinate: usize)
 /// A cubic with its first and second derivative by one sweep of Horner's rule (Knuth, The Art of Computer Programming 2, section 4.6.4);
 /// those beyond `ORDER` repeat the value.
 #[inline(always)]
-fn horner<S: Simd, T: Real, const ORDER: usize>(
-    simd: S,
-    c: [T::Vector<S>; 4],
-    t: T::Vector<S>,
-) -> [T::Vector<S>; 3] {
+fn horner<S: Simd, T: Real, const ORDER: usize>(simd: S, c: [T::Vector<S>; 4], t: T::Vector<S>) -> [T::Vector<S>; 3] {
     let value_2 = T::mul_add(simd, c[3], t, c[2]);
     let value_1 = T::mul_add(simd, value_2, t, c[1]);
     let value = T::mul_add(simd, value_1, t, c[0]);
