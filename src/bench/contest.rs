@@ -12,9 +12,12 @@ const OURS: &str = "catoptric";
 /// The name of the floor.
 const FLOOR: &str = "floor";
 
+/// A name, and what it does.
+type Contestant<'a> = (&'static str, Box<dyn FnMut() + 'a>);
+
 /// Pieces of work that are measured against each other.
 pub struct Contest<'a> {
-    contestants: Vec<(&'static str, Box<dyn FnMut() + 'a>)>,
+    contestants: Vec<Contestant<'a>>,
 }
 
 /// Medians of the runs.

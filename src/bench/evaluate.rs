@@ -33,9 +33,12 @@ fn in_order<T: Real>(evaluator: &Evaluator<T>, samples: &[(u32, f64, f64)]) -> V
     evaluator.place(&typed).order().iter().map(|&index| typed[index as usize]).collect()
 }
 
+/// What evaluates samples.
+pub(super) type Evaluates<T> = Box<dyn FnMut(&PeerSamples<T>, &mut [[[T; 3]; 3]])>;
+
 /// A number type that Bfr evaluates in.
 pub(super) trait Peered: Real {
-    fn bfr(mesh: &SubdivMesh) -> Result<Box<dyn FnMut(&PeerSamples<Self>, &mut [[[Self; 3]; 3]])>, BenchError>;
+    fn bfr(mesh: &SubdivMesh) -> Result<Evaluates<Self>, BenchError>;
     /// Osd, in `f32` alone: the samples are placed here.
     fn osd(mesh: &SubdivMesh, samples: &[(u32, Self, Self)]) -> Result<Option<Box<dyn FnMut()>>, BenchError>;
     /// Embree, in `f32` alone and where it is built in.
@@ -46,7 +49,7 @@ pub(super) trait Peered: Real {
 macro_rules! peered {
     ($type:ty, $name:literal, $osd:expr, $embree:expr) => {
         impl Peered for $type {
-            fn bfr(mesh: &SubdivMesh) -> Result<Box<dyn FnMut(&PeerSamples<Self>, &mut [[[Self; 3]; 3]])>, BenchError> {
+            fn bfr(mesh: &SubdivMesh) -> Result<Evaluates<Self>, BenchError> {
                 let peer = BfrPeer::<$type>::new(mesh, Bfr::DEFAULT_LEVELS)?;
                 Ok(Box::new(move |samples, jets| peer.evaluate(samples, jets).expect("it evaluated before")))
             }

@@ -110,7 +110,7 @@ fn picture_error(
 
 pub(super) fn frame(mesh: &SubdivMesh, effort: Effort, gpu: &Gpu) -> Result<Vec<Row>, BenchError> {
     let surface = LimitSurface::new(mesh)?;
-    let scout = Scout::new(&surface).ok_or(BenchError::Empty)?;
+    let scout = Scout::new(&surface).ok_or("no surface: there is no picture of it")?;
     let camera = scout.camera([SIDE, SIDE], mesh.up.unwrap_or(DVec3::Y));
     let exact = View { samples: 1, ..View::new(camera, scout.light(&camera)) };
     let limit = View { pipeline: Pipeline::Limit, ..exact.clone() };

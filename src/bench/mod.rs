@@ -13,37 +13,13 @@ mod tables;
 
 pub use contest::{Contest, Figure};
 
-use crate::gpu::{Gpu, GpuError};
-use crate::memory::TooMuch;
+use crate::gpu::Gpu;
 use crate::mesh::SubdivMesh;
-use crate::osd;
-use crate::patch::PatchError;
-use crate::stam::MoveError;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Why a row was not measured.
-#[derive(Debug, thiserror::Error)]
-pub enum BenchError {
-    /// The mesh has no limit surface.
-    #[error(transparent)]
-    Patch(#[from] PatchError),
-    /// Control points could not be moved.
-    #[error(transparent)]
-    Move(#[from] MoveError),
-    /// OpenSubdiv refused the mesh.
-    #[error(transparent)]
-    Osd(#[from] osd::Error),
-    /// The adapter failed.
-    #[error(transparent)]
-    Gpu(#[from] GpuError),
-    /// Tables take more memory than there is.
-    #[error("the evaluator: {0}")]
-    Memory(#[from] TooMuch),
-    /// Nothing is to be seen.
-    #[error("the mesh has no surface: there is no picture of it")]
-    Empty,
-}
+/// Why a row was not measured: somebody refuses the mesh, the adapter fails, or memory does not suffice.
+pub type BenchError = Box<dyn std::error::Error + Send + Sync>;
 
 /// The work that is measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
