@@ -173,8 +173,8 @@ impl Frame {
 
     fn place<T: Real>(&self, own: [&[f64; 16]; 3], origin: DVec3, piece: &mut Piece<T>) {
         let mut put = |k: usize, from: usize| {
-            for coordinate in 0..3 {
-                piece.0[3 * k + coordinate] = T::of(own[coordinate][from] * self.factors[k]);
+            for (coordinate, own) in own.iter().enumerate() {
+                piece.0[3 * k + coordinate] = T::of(own[from] * self.factors[k]);
             }
         };
         match self.turned {
