@@ -33,6 +33,9 @@ fn in_order<T: Real>(evaluator: &Evaluator<T>, samples: &[(u32, f64, f64)]) -> V
     evaluator.place(&typed).order().iter().map(|&index| typed[index as usize]).collect()
 }
 
+/// Position, du and dv in single precision.
+pub(super) type Jet = [[f32; 3]; 3];
+
 /// What evaluates samples.
 pub(super) type Evaluates<T> = Box<dyn FnMut(&PeerSamples<T>, &mut [[[T; 3]; 3]])>;
 
@@ -76,6 +79,9 @@ peered!(f64, "evaluate_batched_f64", |_, _| Ok(None), |_, _| Ok(None));
 #[cfg(feature = "peers")]
 fn embree_placed(mesh: &SubdivMesh, samples: &[(u32, f32, f32)]) -> Result<Option<Box<dyn FnMut()>>, BenchError> {
     use crate::osd::{EmbreeSamples, EmbreeSubdivision};
+    if !EmbreeSubdivision::takes(mesh) {
+        return Ok(None);
+    }
     let (embree, samples) = (EmbreeSubdivision::new(mesh)?, EmbreeSamples::new(mesh, samples));
     let mut out = vec![0.0f32; samples.room()];
     Ok(Some(Box::new(move || embree.evaluate(&samples, black_box(&mut out)).expect("it evaluated before"))))
@@ -83,6 +89,24 @@ fn embree_placed(mesh: &SubdivMesh, samples: &[(u32, f32, f32)]) -> Result<Optio
 
 #[cfg(not(feature = "peers"))]
 fn embree_placed(_: &SubdivMesh, _: &[(u32, f32, f32)]) -> Result<Option<Box<dyn FnMut()>>, BenchError> {
+    Ok(None)
+}
+
+/// Embree's answers, where it is built in and takes the mesh.
+#[cfg(feature = "peers")]
+pub(super) fn embree_jets(mesh: &SubdivMesh, samples: &[(u32, f32, f32)]) -> Result<Option<Vec<Jet>>, BenchError> {
+    use crate::osd::{EmbreeSamples, EmbreeSubdivision};
+    if !EmbreeSubdivision::takes(mesh) {
+        return Ok(None);
+    }
+    let (embree, placed) = (EmbreeSubdivision::new(mesh)?, EmbreeSamples::new(mesh, samples));
+    let mut out = vec![0.0f32; placed.room()];
+    embree.evaluate(&placed, &mut out)?;
+    Ok(Some((0..samples.len()).map(|sample| placed.jet(&out, sample)).collect()))
+}
+
+#[cfg(not(feature = "peers"))]
+pub(super) fn embree_jets(_: &SubdivMesh, _: &[(u32, f32, f32)]) -> Result<Option<Vec<Jet>>, BenchError> {
     Ok(None)
 }
 

@@ -1,6 +1,6 @@
 //! How far normals in single precision are off.
 
-use super::evaluate::Peered;
+use super::evaluate::{Jet, Peered, embree_jets};
 use super::{BenchError, Effort, Row};
 use crate::mesh::SubdivMesh;
 use crate::osd::{MAX_ISOLATION, OsdPeer, PeerSamples};
@@ -43,9 +43,9 @@ fn percentile(values: &[f64], part: f64) -> f64 {
     sorted.get(rank.saturating_sub(1)).copied().unwrap_or(f64::NAN)
 }
 
-fn of_jets(jets: &[[[f32; 3]; 3]], normals: &[DVec3]) -> Vec<f64> {
+fn of_jets(jets: &[Jet], normals: &[DVec3]) -> Vec<f64> {
     let vector = |x: [f32; 3]| DVec3::from_array(x.map(f64::from));
-    let normal = |jet: &[[f32; 3]; 3]| vector(jet[1]).normalize_or_zero().cross(vector(jet[2]).normalize_or_zero());
+    let normal = |jet: &Jet| vector(jet[1]).normalize_or_zero().cross(vector(jet[2]).normalize_or_zero());
     jets.iter().zip(normals).map(|(jet, &exact)| angle_deg(normal(jet), exact)).collect()
 }
 
@@ -72,19 +72,21 @@ fn at(mesh: &SubdivMesh, offset: f64, samples: &[(u32, f32, f32)], normals: &[DV
     osd.place(&peer_samples)?;
     osd.evaluate(&mut jets)?;
     let osd = of_jets(&jets, normals);
+    let embree = embree_jets(&mesh, samples)?.map(|jets| of_jets(&jets, normals));
 
     let row = |what: &str, part: f64| {
         let of = |errors: &[f64]| percentile(errors, part);
-        let theirs = [("bfr", of(&bfr)), ("osd", of(&osd))];
-        let mut peers: BTreeMap<&str, Option<f64>> = [("embree", None)].into();
-        peers.extend(theirs.map(|(peer, error)| (peer, Some(error))));
+        let embree = embree.as_deref().map(of);
+        let peers: BTreeMap<&str, Option<f64>> =
+            [("bfr", Some(of(&bfr))), ("osd", Some(of(&osd))), ("embree", embree)].into();
+        let ratios = peers.iter().filter_map(|(peer, error)| Some((*peer, [(*error)? / of(&ours); 2]))).collect();
         Row {
             name: format!("normal_error_{what}_at_{offset}"),
             unit: "degrees",
             catoptric: of(&ours),
             peers,
             floor: None,
-            ratios: theirs.map(|(peer, error)| (peer, [error / of(&ours); 2])).into(),
+            ratios,
             note: format!(
                 "{what} of {} samples in f32, mesh moved by {offset} along each axis, against the exact limit in f64; peers: cross product of \
                  their derivatives; Bfr at levels 2 and 6, Osd at isolation 10",

@@ -1,8 +1,15 @@
 //! Embree 3.13, a peer of benchmarks (cargo feature `peers`).
 
 use super::{Descriptor, Error, check, int, raw};
-use crate::mesh::SubdivMesh;
+use crate::mesh::{Creasing, Scheme, SubdivMesh};
 use std::ptr::NonNull;
+
+/// Samples that go to Embree at a time.
+const BATCH: usize = raw::EMB_BATCH as usize;
+
+/// Edges of a face, and faces of a vertex, up to which Embree evaluates: beyond them it aborts (`MAX_PATCH_VALENCE`, `MAX_RING_FACE_VALENCE`).
+const MOST_EDGES: u32 = 15;
+const MOST_FACES: usize = 64;
 
 /// Samples of a subdivision mesh as Embree takes them.
 #[derive(Debug, Clone, Default)]
@@ -33,7 +40,19 @@ impl EmbreeSamples {
 
     /// Numbers that the results take: position, du and dv of each sample, in whole batches.
     pub fn room(&self) -> usize {
-        9 * self.faces.len().next_multiple_of(raw::EMB_BATCH as usize)
+        9 * self.faces.len().next_multiple_of(BATCH)
+    }
+
+    /// Position, du and dv of one sample among the results.
+    ///
+    /// # Panics
+    /// There is no such sample.
+    pub fn jet(&self, results: &[f32], sample: usize) -> [[f32; 3]; 3] {
+        let first = sample - sample % BATCH;
+        // The last batch has as many of each as there are left.
+        let stride = BATCH.min(self.faces.len() - first);
+        let number = |k: usize| results[9 * first + k * stride + sample % BATCH];
+        [0, 3, 6].map(|k| [number(k), number(k + 1), number(k + 2)])
     }
 }
 
@@ -57,12 +76,25 @@ impl Drop for EmbreeSubdivision {
 }
 
 impl EmbreeSubdivision {
+    /// Whether Embree knows all of the mesh's rules, and has room for its faces and vertices.
+    pub fn takes(mesh: &SubdivMesh) -> bool {
+        let mut faces = vec![0usize; mesh.points.len()];
+        mesh.face_vertices.iter().for_each(|&vertex| faces[vertex as usize] += 1);
+        let fits = mesh.face_sizes.iter().all(|&size| size <= MOST_EDGES) && faces.iter().all(|&n| n <= MOST_FACES);
+        fits && mesh.scheme == Scheme::CatmullClark && mesh.creasing == Creasing::Uniform
+    }
+
     /// Hands the mesh to Embree.
     ///
     /// # Errors
-    /// The mesh is not valid, or Embree reports an error.
+    /// The mesh is not valid, Embree does not take it, or reports an error.
     pub fn new(mesh: &SubdivMesh) -> Result<Self, Error> {
         let descriptor = Descriptor::new(mesh)?;
+        if !Self::takes(mesh) {
+            let refusal =
+                format!("Embree takes faces of {MOST_EDGES} edges, vertices of {MOST_FACES} faces, uniform creases");
+            return Err(Error::OpenSubdiv(refusal));
+        }
         let mut handle = std::ptr::null_mut();
         // SAFETY: the descriptor outlives the call, which copies it; its indices are validated.
         check(unsafe { raw::emb_subdivision_create(&descriptor.as_raw(), descriptor.points.as_ptr(), &mut handle) })?;
