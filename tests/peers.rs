@@ -39,7 +39,7 @@ fn bfr_answers_what_the_reference_does() {
 #[test]
 fn osd_answers_what_far_does() {
     for mesh in meshes() {
-        let (Ok(mut far), Ok(mut peer)) = (Far::new(&mesh, MAX_ISOLATION), OsdPeer::new(&mesh, MAX_ISOLATION)) else {
+        let (Ok(far), Ok(mut peer)) = (Far::new(&mesh, MAX_ISOLATION), OsdPeer::new(&mesh, MAX_ISOLATION)) else {
             continue;
         };
         let references = far.evaluate(&places(&mesh)).expect("an answer");
