@@ -16,7 +16,7 @@ osd_status emb_subdivision_create(const osd_mesh *mesh, const double *points, em
 void emb_subdivision_destroy(emb_subdivision *subdivision);
 /*
  * faces, u, v: count; faces are those of the mesh, and (u,v) of an n-gon as Embree encodes its quadrants. out: for every
- * EMB_BATCH samples 9 arrays of EMB_BATCH numbers: x, y, z, and those of du and dv.
+ * EMB_BATCH samples, and for those that are left, 9 arrays of a number a sample: x, y, z, and those of du and dv.
  */
 enum { EMB_BATCH = 256 };
 osd_status emb_subdivision_evaluate(const emb_subdivision *subdivision, int32_t count, const uint32_t *faces,

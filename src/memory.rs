@@ -6,6 +6,7 @@
 
 use bytesize::ByteSize;
 use std::sync::atomic::{AtomicU64, Ordering};
+use sysinfo::{MemoryRefreshKind, RefreshKind, System};
 
 static LIMIT: AtomicU64 = AtomicU64::new(u64::MAX);
 
@@ -17,6 +18,15 @@ pub fn set_limit(bytes: u64) {
 /// Bytes that the process may take.
 pub fn limit() -> u64 {
     LIMIT.load(Ordering::Relaxed)
+}
+
+/// What the system has to give, or all that it gives to this process's group (of which caches, that it takes back, count as
+/// used); `None` where it does not say.
+pub fn free() -> Option<u64> {
+    let memory = RefreshKind::nothing().with_memory(MemoryRefreshKind::nothing().with_ram());
+    let system = System::new_with_specifics(memory).ok()?;
+    let group = system.cgroup_limits().map_or(u64::MAX, |limits| limits.total_memory);
+    Some(system.available_memory().min(group)).filter(|&bytes| bytes > 0)
 }
 
 /// More memory is needed than the process may take.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::time::Instant;
 
 /// Runs of each contest: what their ratios differ by is the spread.
-const RUNS: usize = 3;
+pub(super) const RUNS: usize = 3;
 
 /// The name under which we run.
 const OURS: &str = "catoptric";
@@ -15,14 +15,41 @@ const FLOOR: &str = "floor";
 /// A name, and what it does.
 type Contestant<'a> = (&'static str, Box<dyn FnMut() + 'a>);
 
-/// Pieces of work that are measured against each other.
+/// One piece of work, and all who do it.
 pub struct Contest<'a> {
+    name: String,
+    unit: Unit,
+    note: String,
     contestants: Vec<Contestant<'a>>,
+}
+
+/// What a figure is in.
+#[derive(Debug, Clone, Copy)]
+pub struct Unit {
+    /// Its name.
+    pub name: &'static str,
+    /// How many of it a second of a turn is.
+    pub in_a_second: f64,
+}
+
+impl Unit {
+    /// Milliseconds of a turn.
+    pub const MILLISECONDS: Self = Self { name: "ms", in_a_second: 1e3 };
+
+    /// Nanoseconds a sample.
+    pub fn nanoseconds_a_sample(samples: usize) -> Self {
+        Self { name: "ns/sample", in_a_second: 1e9 / samples as f64 }
+    }
+
+    /// Microseconds a control face.
+    pub fn microseconds_a_face(faces: usize) -> Self {
+        Self { name: "us/face", in_a_second: 1e6 / faces as f64 }
+    }
 }
 
 /// Medians of the runs.
 #[derive(Debug, Clone, Copy)]
-pub struct Figure([f64; RUNS]);
+pub struct Figure(pub(super) [f64; RUNS]);
 
 impl Figure {
     /// The median of the runs.
@@ -31,18 +58,25 @@ impl Figure {
         sorted.sort_by(f64::total_cmp);
         sorted[RUNS / 2]
     }
+
+    /// It over ours, least and largest of the runs.
+    pub fn over(&self, ours: &Self) -> [f64; 2] {
+        let ratios = self.0.iter().zip(&ours.0).map(|(theirs, ours)| theirs / ours);
+        ratios.fold([f64::INFINITY, 0.0f64], |[low, high], r| [low.min(r), high.max(r)])
+    }
 }
 
 impl std::fmt::Debug for Contest<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}: ", self.name)?;
         f.debug_list().entries(self.contestants.iter().map(|(name, _)| name)).finish()
     }
 }
 
 impl<'a> Contest<'a> {
     /// With ours.
-    pub fn new(ours: impl FnMut() + 'a) -> Self {
-        Self { contestants: vec![(OURS, Box::new(ours))] }
+    pub fn new(name: impl Into<String>, unit: Unit, note: String, ours: impl FnMut() + 'a) -> Self {
+        Self { name: name.into(), unit, note, contestants: vec![(OURS, Box::new(ours))] }
     }
 
     /// With a peer.
@@ -51,13 +85,29 @@ impl<'a> Contest<'a> {
         self
     }
 
+    /// With more to say.
+    pub fn noting(mut self, more: &str) -> Self {
+        self.note.push_str(more);
+        self
+    }
+
     /// With the least that the work cannot do without.
     pub fn floor(self, work: impl FnMut() + 'a) -> Self {
         self.against(FLOOR, work)
     }
 
+    /// Name of the row.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Who does the work, and a turn of it.
+    pub fn contestants(&mut self) -> impl Iterator<Item = (&'static str, &mut (dyn FnMut() + 'a))> {
+        self.contestants.iter_mut().map(|(name, work)| (*name, &mut **work))
+    }
+
     /// Seconds of each, in turns, each warmed up when its turn comes.
-    pub fn run(mut self, effort: Effort) -> BTreeMap<&'static str, Figure> {
+    pub fn run(&mut self, effort: Effort) -> BTreeMap<&'static str, Figure> {
         self.contestants.iter_mut().for_each(|(_, work)| work());
         let mut runs: Vec<[f64; RUNS]> = vec![[0.0; RUNS]; self.contestants.len()];
         for run in 0..RUNS {
@@ -79,26 +129,12 @@ impl<'a> Contest<'a> {
         self.contestants.iter().zip(runs).map(|((name, _), runs)| (*name, Figure(runs))).collect()
     }
 
-    /// The row of a report: seconds times `scale` are its unit.
-    pub fn row(self, name: &str, unit: &'static str, scale: f64, note: String, effort: Effort) -> Row {
-        let figures = self.run(effort);
-        let ours = figures[OURS];
-        let others = || figures.iter().filter(|(name, _)| **name != OURS && **name != FLOOR);
-        let ratios = others().map(|(name, theirs)| {
-            let ratios = theirs.0.iter().zip(&ours.0).map(|(theirs, ours)| theirs / ours);
-            let ends = ratios.fold([f64::INFINITY, 0.0f64], |[low, high], r| [low.min(r), high.max(r)]);
-            (*name, ends)
-        });
-        let mut peers: BTreeMap<&str, Option<f64>> = ["bfr", "osd", "embree"].map(|peer| (peer, None)).into();
-        peers.extend(others().map(|(name, theirs)| (*name, Some(scale * theirs.median()))));
-        Row {
-            name: name.to_owned(),
-            unit,
-            catoptric: scale * ours.median(),
-            peers,
-            floor: figures.get(FLOOR).map(|floor| scale * floor.median()),
-            ratios: ratios.collect(),
-            note,
-        }
+    /// The row of a report.
+    pub fn row(mut self, effort: Effort) -> Row {
+        let mut figures = self.run(effort);
+        let ours = figures.remove(OURS).expect("we take part");
+        let Unit { name: unit, in_a_second } = self.unit;
+        let floor = figures.remove(FLOOR).map(|floor| in_a_second * floor.median());
+        Row { floor, ..Row::new(self.name, unit, in_a_second, &ours, &figures, self.note) }
     }
 }

@@ -1,6 +1,6 @@
 //! Rows that evaluate the limit at samples.
 
-use super::{BenchError, Contest, Effort, Row};
+use super::{BenchError, Contest, Effort, Unit};
 use crate::mesh::SubdivMesh;
 use crate::osd::{Bfr, BfrPeer, MAX_ISOLATION, OsdPeer, PeerSamples};
 use crate::stam::{Evaluator, LimitSurface, Real, Results, Wanted};
@@ -112,41 +112,41 @@ pub(super) fn embree_jets(_: &SubdivMesh, _: &[(u32, f32, f32)]) -> Result<Optio
 
 fn osd_placed(mesh: &SubdivMesh, samples: &[(u32, f32, f32)]) -> Result<Option<Box<dyn FnMut()>>, BenchError> {
     let mut osd = OsdPeer::new(mesh, MAX_ISOLATION)?;
-    osd.place(&PeerSamples::new(samples, mesh.ptex_count()))?;
+    all_placed(osd.place(&PeerSamples::new(samples, mesh.ptex_count()))?, samples.len())?;
     let mut jets = vec![[[0.0f32; 3]; 3]; samples.len()];
     Ok(Some(Box::new(move || osd.evaluate(black_box(&mut jets)).expect("it evaluated before"))))
 }
 
-pub(super) fn batched<T: Peered>(mesh: &SubdivMesh, effort: Effort) -> Result<Vec<Row>, BenchError> {
+/// Osd leaves samples without a patch out, which would be less work.
+pub(super) fn all_placed(placed: usize, samples: usize) -> Result<(), BenchError> {
+    if placed == samples { Ok(()) } else { Err(format!("Osd has patches for {placed} of {samples} samples").into()) }
+}
+
+pub(super) fn batched<T: Peered>(mesh: &SubdivMesh, effort: Effort) -> Result<Contest<'_>, BenchError> {
     let surface = LimitSurface::new(mesh)?;
     let evaluator = Evaluator::<T>::new(&surface)?;
     let samples = in_order(&evaluator, &grouped(&surface, effort.samples));
     let (count, placed) = (samples.len(), evaluator.place(&samples));
-    let (mut results, mut untouched) = (Results::<T>::new(WANTED, count), Results::<T>::new(WANTED, count));
+    let [mut results, mut untouched] = [(); 2].map(|()| Results::<T>::new(WANTED, count));
     let peer_samples = PeerSamples::new(&samples, surface.ptex_count());
     let mut jets = vec![[[T::default(); 3]; 3]; count];
-    let mut bfr = T::bfr(mesh)?;
-    let mut contest = Contest::new(|| evaluator.evaluate(&placed, black_box(results.columns())))
-        .against("bfr", || bfr(&peer_samples, black_box(&mut jets)));
-    if let Some(osd) = T::osd(mesh, &samples)? {
-        contest = contest.against("osd", osd);
-    }
-    if let Some(embree) = T::embree(mesh, &samples)? {
-        contest = contest.against("embree", embree);
-    }
-    contest = contest.floor(|| untouched.fill(black_box(T::default())));
-    let per_sample = 1e9 / count as f64;
+    let (mut bfr, osd, embree) = (T::bfr(mesh)?, T::osd(mesh, &samples)?, T::embree(mesh, &samples)?);
     let note = format!(
         "{count} samples grouped by patch, {OF_A_FACE} a face: P, du, dv; patches found before (Bfr finds them itself); Bfr at its default \
-         levels 2 and 6, Osd at isolation 10; floor: writing the {} bytes of a result",
-        9 * size_of::<T>()
+         levels 2 and 6, Osd at isolation 10; floor: writing the {} bytes of a result; tables {} bytes",
+        9 * size_of::<T>(),
+        evaluator.bytes()
     );
-    let mut rows = vec![contest.row(T::NAME, "ns/sample", per_sample, note, effort)];
-    rows[0].note.push_str(&format!("; tables {} bytes", evaluator.bytes()));
-    Ok(rows)
+    let ours = move || evaluator.evaluate(&placed, black_box(results.columns()));
+    let mut contest = Contest::new(T::NAME, Unit::nanoseconds_a_sample(count), note, ours)
+        .against("bfr", move || bfr(&peer_samples, black_box(&mut jets)));
+    for (peer, work) in [("osd", osd), ("embree", embree)] {
+        contest = work.into_iter().fold(contest, |contest, work| contest.against(peer, work));
+    }
+    Ok(contest.floor(move || untouched.fill(black_box(T::default()))))
 }
 
-pub(super) fn random(mesh: &SubdivMesh, effort: Effort) -> Result<Vec<Row>, BenchError> {
+pub(super) fn random(mesh: &SubdivMesh, effort: Effort) -> Result<Contest<'_>, BenchError> {
     let surface = LimitSurface::new(mesh)?;
     let evaluator = Evaluator::<f32>::new(&surface)?;
     let faces: Vec<u32> =
@@ -159,19 +159,20 @@ pub(super) fn random(mesh: &SubdivMesh, effort: Effort) -> Result<Vec<Row>, Benc
     };
     let samples: Vec<_> = (0..effort.samples).map(sample).collect();
     let peer_samples = PeerSamples::new(&samples, surface.ptex_count());
-    let room = || vec![[[0.0f32; 3]; 3]; samples.len()];
-    let (mut ours, mut theirs, mut others) = (room(), room(), room());
+    let of_bfr = peer_samples.clone();
+    let [mut ours, mut theirs, mut others] = [(); 3].map(|()| vec![[[0.0f32; 3]; 3]; samples.len()]);
     let mut osd = OsdPeer::new(mesh, MAX_ISOLATION)?;
+    all_placed(osd.place(&peer_samples)?, samples.len())?;
     let mut bfr = f32::bfr(mesh)?;
-    let contest = Contest::new(|| evaluator.each(&samples, black_box(&mut ours)))
-        .against("osd", || {
-            osd.place(&peer_samples).expect("it placed before");
-            osd.evaluate(black_box(&mut theirs)).expect("it evaluated before");
-        })
-        .against("bfr", || bfr(&peer_samples, black_box(&mut others)));
     let note = format!(
         "{} samples on random faces: the patch is found, then P, du, dv; Osd at isolation 10, FindPatch and EvalPatches; Bfr at its default levels",
         samples.len()
     );
-    Ok(vec![contest.row("evaluate_random", "ns/sample", 1e9 / samples.len() as f64, note, effort)])
+    let unit = Unit::nanoseconds_a_sample(samples.len());
+    Ok(Contest::new("evaluate_random", unit, note, move || evaluator.each(&samples, black_box(&mut ours)))
+        .against("osd", move || {
+            osd.place(&peer_samples).expect("it placed before");
+            osd.evaluate(black_box(&mut theirs)).expect("it evaluated before");
+        })
+        .against("bfr", move || bfr(&of_bfr, black_box(&mut others))))
 }

@@ -1,14 +1,15 @@
 //! Rows that draw pictures.
 
-use super::{BenchError, Contest, Effort, Row};
+use super::{BenchError, Contest, Unit};
 use crate::field::Scout;
-use crate::gpu::{Corner, Gpu, NO_PATCH, Pipeline, Tessellated, View};
+use crate::gpu::{Corner, Gpu, NO_PATCH, Pipeline, View};
 use crate::mesh::SubdivMesh;
 use crate::stam::LimitSurface;
 use crate::statistics::{angle_deg, scatter, short};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::hint::black_box;
+use std::rc::Rc;
 
 /// Side of the picture.
 const SIDE: u32 = 1024;
@@ -108,55 +109,51 @@ fn picture_error(
     Ok(errors.get((errors.len() * 9999).div_ceil(10_000).saturating_sub(1)).copied().unwrap_or(f64::NAN))
 }
 
-pub(super) fn frame(mesh: &SubdivMesh, effort: Effort, gpu: &Gpu) -> Result<Vec<Row>, BenchError> {
+pub(super) fn frame<'a>(mesh: &'a SubdivMesh, gpu: &'a Gpu) -> Result<Vec<Contest<'a>>, BenchError> {
     let surface = LimitSurface::new(mesh)?;
     let scout = Scout::new(&surface).ok_or("no surface: there is no picture of it")?;
     let camera = scout.camera([SIDE, SIDE], mesh.up.unwrap_or(DVec3::Y));
     let exact = View { samples: 1, ..View::new(camera, scout.light(&camera)) };
     let limit = View { pipeline: Pipeline::Limit, ..exact.clone() };
-    let tables = gpu.upload(&surface)?;
+    let tables = Rc::new(gpu.upload(&surface)?);
     let faces: Vec<u32> =
         (0..surface.ptex_count() as u32).filter(|&face| surface.locate(face, [0.5; 2]).is_some()).collect();
     let grid = Grid::accurate(&surface, &faces);
-    let triangles = gpu.tessellate(&grid.corners, &grid.indices, &exact)?;
+    let triangles = Rc::new(gpu.tessellate(&grid.corners, &grid.indices, &exact)?);
     gpu.draw_tessellated(&triangles)?;
-    gpu.render(&tables, &limit)?;
-    let error = picture_error(&surface, gpu, &tables, &limit)?;
-    let note = |what: &str| {
-        format!(
+    let contest = |name: &str, view: &View, what: &str| {
+        let note = format!(
             "{SIDE} x {SIDE}, one sample a pixel, tables resident, {what}, picture read back; tables {} bytes, normals {} degrees off at p99.99; \
-             tessellation: {} x {} quads a ptex face, resident, not read back, {} bytes ({}x), normals {} degrees off at p99 (asked {BUDGET})",
+             tessellation: {} x {} quads a ptex face, resident, not read back, {} bytes ({}x), normals {} degrees off at p99 (asked {BUDGET}; \
+             at extraordinary vertices no tessellation is as near at p99.99)",
             tables.size(),
-            short(error),
+            short(picture_error(&surface, gpu, &tables, view)?),
             grid.parts,
             grid.parts,
             triangles.bytes(),
             short(triangles.bytes() as f64 / tables.size() as f64),
             short(grid.error),
-        )
+        );
+        gpu.render(&tables, view)?;
+        let (tables, triangles, view) = (tables.clone(), triangles.clone(), view.clone());
+        let ours = move || _ = black_box(gpu.render(&tables, &view).expect("it was drawn before"));
+        let theirs = move || gpu.draw_tessellated(&triangles).expect("it was drawn before");
+        Ok::<_, BenchError>(Contest::new(name, Unit::MILLISECONDS, note, ours).against("tessellation", theirs))
     };
-    let against = |view: &View, triangles: &Tessellated, name: &str, note: String| {
-        let ours = || _ = black_box(gpu.render(&tables, view).expect("it was drawn before"));
-        let theirs = || gpu.draw_tessellated(triangles).expect("it was drawn before");
-        let contest = Contest::new(ours).against("tessellation", theirs);
-        frame_exact(contest, name, &grid, &exact).map(|contest| contest.row(name, "ms", 1e3, note, effort))
-    };
-    Ok(vec![
-        against(&limit, &triangles, "frame", note("the limit at the parameters of a rasterised proxy"))?,
-        against(&exact, &triangles, "frame_exact", note("the limit where each pixel's ray meets it"))?,
-    ])
+    let limit = contest("frame", &limit, "the limit at the parameters of a rasterised proxy")?;
+    let exact_frame = contest("frame_exact", &exact, "the limit where each pixel's ray meets it")?;
+    Ok(vec![limit, traced(exact_frame, &grid, &exact)?])
 }
 
 /// With the peer that traces a ray a pixel, on two threads.
 #[cfg(feature = "peers")]
-fn frame_exact<'a>(contest: Contest<'a>, name: &str, grid: &Grid, view: &View) -> Result<Contest<'a>, BenchError> {
+fn traced<'a>(contest: Contest<'a>, grid: &Grid, view: &View) -> Result<Contest<'a>, BenchError> {
     use crate::osd::{EmbreeCamera, EmbreeTriangles};
     const THREADS: u32 = 2;
-    if name != "frame_exact" {
-        return Ok(contest);
-    }
     let points: Vec<[f32; 3]> = grid.corners.iter().map(|corner| corner[0]).collect();
+    let start = std::time::Instant::now();
     let triangles = EmbreeTriangles::new(&points, bytemuck::cast_slice(&grid.indices), THREADS)?;
+    let built = start.elapsed().as_secs_f64();
     let axes = view.camera.axes();
     let at = |x: f64, y: f64| {
         let [x, y] = [2.0 * x / f64::from(SIDE) - 1.0, 1.0 - 2.0 * y / f64::from(SIDE)];
@@ -173,12 +170,16 @@ fn frame_exact<'a>(contest: Contest<'a>, name: &str, grid: &Grid, view: &View) -
         height: SIDE as i32,
     };
     let mut depths = vec![0.0; (SIDE * SIDE) as usize];
-    Ok(contest.against("embree", move || {
+    let note = format!(
+        "; Embree: rtcIntersect16 of a ray a pixel with the tessellation, {THREADS} threads, no shading; its hierarchy took {} s before",
+        short(built)
+    );
+    Ok(contest.noting(&note).against("embree", move || {
         black_box(triangles.trace(&camera, THREADS, &mut depths).expect("it was traced before"));
     }))
 }
 
 #[cfg(not(feature = "peers"))]
-fn frame_exact<'a>(contest: Contest<'a>, _: &str, _: &Grid, _: &View) -> Result<Contest<'a>, BenchError> {
+fn traced<'a>(contest: Contest<'a>, _: &Grid, _: &View) -> Result<Contest<'a>, BenchError> {
     Ok(contest)
 }

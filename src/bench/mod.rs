@@ -9,14 +9,18 @@ mod contest;
 mod evaluate;
 mod frame;
 mod normals;
+mod scale;
+mod sheet;
 mod tables;
 
-pub use contest::{Contest, Figure};
+pub use contest::{Contest, Figure, Unit};
+pub use scale::{Contender, Stages};
 
 use crate::gpu::Gpu;
 use crate::mesh::SubdivMesh;
 use serde::Serialize;
 use std::collections::BTreeMap;
+use std::path::Path;
 
 /// Why a row was not measured: somebody refuses the mesh, the adapter fails, or memory does not suffice.
 pub type BenchError = Box<dyn std::error::Error + Send + Sync>;
@@ -30,7 +34,7 @@ pub enum Work {
     BatchedDouble,
     /// Position, du and dv of samples on random faces, the search for their patches counted in, one thread, `f32`.
     Random,
-    /// From a mesh in memory to tables on the adapter, one thread.
+    /// From a mesh in memory to tables, one thread.
     Tables,
     /// Control points move, topology stays, one thread.
     Update,
@@ -38,12 +42,22 @@ pub enum Work {
     Frame,
     /// How far normals in `f32` are off.
     NormalError,
+    /// Sheets of 10,000 to 1,000,000 faces, from their files to their pictures.
+    Scale,
 }
 
 impl Work {
     /// All, in the order of the report.
-    pub const ALL: [Self; 7] =
-        [Self::Batched, Self::BatchedDouble, Self::Random, Self::Tables, Self::Update, Self::Frame, Self::NormalError];
+    pub const ALL: [Self; 8] = [
+        Self::Batched,
+        Self::BatchedDouble,
+        Self::Random,
+        Self::Tables,
+        Self::Update,
+        Self::Frame,
+        Self::NormalError,
+        Self::Scale,
+    ];
 
     /// Name in reports.
     pub fn name(self) -> &'static str {
@@ -55,6 +69,7 @@ impl Work {
             Self::Update => "update",
             Self::Frame => "frame",
             Self::NormalError => "normal_error",
+            Self::Scale => "scale",
         }
     }
 }
@@ -78,6 +93,23 @@ pub struct Row {
     pub note: String,
 }
 
+impl Row {
+    /// From the runs of all, `scale` of whose units are one of the row's.
+    fn new(
+        name: String,
+        unit: &'static str,
+        scale: f64,
+        ours: &Figure,
+        theirs: &BTreeMap<&'static str, Figure>,
+        note: String,
+    ) -> Self {
+        let mut peers: BTreeMap<_, _> = ["bfr", "osd", "embree"].map(|peer| (peer, None)).into();
+        peers.extend(theirs.iter().map(|(peer, figure)| (*peer, Some(scale * figure.median()))));
+        let ratios = theirs.iter().map(|(peer, figure)| (*peer, figure.over(ours))).collect();
+        Self { name, unit, catoptric: scale * ours.median(), peers, floor: None, ratios, note }
+    }
+}
+
 /// How much is measured.
 #[derive(Debug, Clone, Copy)]
 pub struct Effort {
@@ -85,28 +117,56 @@ pub struct Effort {
     pub turns: usize,
     /// Samples of the rows that evaluate.
     pub samples: usize,
+    /// Control faces of the largest sheet.
+    pub faces: usize,
 }
 
 impl Effort {
     /// What the documentation quotes.
-    pub const FULL: Self = Self { turns: 9, samples: 1 << 17 };
+    pub const FULL: Self = Self { turns: 9, samples: 1 << 17, faces: 1_000_000 };
     /// Enough to see that all works.
-    pub const QUICK: Self = Self { turns: 1, samples: 1 << 12 };
+    pub const QUICK: Self = Self { turns: 1, samples: 1 << 12, faces: 10_000 };
 }
 
-/// Measures one piece of work on a mesh; none where it needs an adapter and there is none.
+/// What some work needs beside a mesh; what lacks it is left out.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Means<'a> {
+    /// Where pictures are drawn.
+    pub gpu: Option<&'a Gpu>,
+    /// The program `catoptric`: sheets are measured in processes of their own.
+    pub program: Option<&'a Path>,
+}
+
+/// Measures one piece of work on a mesh.
 ///
 /// # Errors
-/// Somebody refuses the mesh.
-pub fn measure(work: Work, mesh: &SubdivMesh, effort: Effort, gpu: Option<&Gpu>) -> Result<Vec<Row>, BenchError> {
+/// Somebody refuses the mesh, or fails.
+pub fn measure(work: Work, mesh: &SubdivMesh, effort: Effort, means: Means<'_>) -> Result<Vec<Row>, BenchError> {
+    match (work, means) {
+        (Work::NormalError, _) => normals::errors(mesh, effort),
+        (Work::Scale, Means { gpu: Some(_), program: Some(program) }) => scale::rows(program, effort),
+        _ => Ok(contests(work, mesh, effort, means.gpu)?.into_iter().map(|contest| contest.row(effort)).collect()),
+    }
+}
+
+/// The contests behind the rows of timed work; none of work that takes no turns, or needs an adapter that is not there.
+///
+/// # Errors
+/// Somebody refuses the mesh, or fails.
+pub fn contests<'a>(
+    work: Work,
+    mesh: &'a SubdivMesh,
+    effort: Effort,
+    gpu: Option<&'a Gpu>,
+) -> Result<Vec<Contest<'a>>, BenchError> {
     match work {
-        Work::Batched => evaluate::batched::<f32>(mesh, effort),
-        Work::BatchedDouble => evaluate::batched::<f64>(mesh, effort),
-        Work::Random => evaluate::random(mesh, effort),
-        Work::Tables => gpu.map_or(Ok(Vec::new()), |gpu| tables::tables(mesh, effort, gpu)),
-        Work::Update => tables::update(mesh, effort),
-        Work::Frame => gpu.map_or(Ok(Vec::new()), |gpu| frame::frame(mesh, effort, gpu)),
-        Work::NormalError => normals::errors(mesh, effort),
+        Work::Batched => Ok(vec![evaluate::batched::<f32>(mesh, effort)?]),
+        Work::BatchedDouble => Ok(vec![evaluate::batched::<f64>(mesh, effort)?]),
+        Work::Random => Ok(vec![evaluate::random(mesh, effort)?]),
+        Work::Tables => tables::tables(mesh, gpu),
+        Work::Update => tables::update(mesh),
+        Work::Frame => gpu.map_or(Ok(Vec::new()), |gpu| frame::frame(mesh, gpu)),
+        Work::NormalError | Work::Scale => Ok(Vec::new()),
     }
 }
 

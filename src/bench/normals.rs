@@ -1,6 +1,6 @@
 //! How far normals in single precision are off.
 
-use super::evaluate::{Jet, Peered, embree_jets};
+use super::evaluate::{Jet, Peered, all_placed, embree_jets};
 use super::{BenchError, Effort, Row};
 use crate::mesh::SubdivMesh;
 use crate::osd::{MAX_ISOLATION, OsdPeer, PeerSamples};
@@ -35,7 +35,7 @@ pub(super) fn errors(mesh: &SubdivMesh, effort: Effort) -> Result<Vec<Row>, Benc
         .map(|rows| rows.concat())
 }
 
-/// The value that this part of them does not exceed (nearest rank), of all but NaN.
+/// The value that this part of them does not exceed (nearest rank), of all but NaN: where the limit has no normal.
 fn percentile(values: &[f64], part: f64) -> f64 {
     let mut sorted: Vec<f64> = values.iter().copied().filter(|x| !x.is_nan()).collect();
     sorted.sort_by(f64::total_cmp);
@@ -43,10 +43,16 @@ fn percentile(values: &[f64], part: f64) -> f64 {
     sorted.get(rank.saturating_sub(1)).copied().unwrap_or(f64::NAN)
 }
 
+/// Degrees between a normal and the exact one, if there is one; none at all is as wrong as can be.
+fn error(normal: DVec3, exact: DVec3) -> f64 {
+    let angle = angle_deg(normal, exact);
+    if angle.is_nan() && exact != DVec3::ZERO { 180.0 } else { angle }
+}
+
 fn of_jets(jets: &[Jet], normals: &[DVec3]) -> Vec<f64> {
     let vector = |x: [f32; 3]| DVec3::from_array(x.map(f64::from));
     let normal = |jet: &Jet| vector(jet[1]).normalize_or_zero().cross(vector(jet[2]).normalize_or_zero());
-    jets.iter().zip(normals).map(|(jet, &exact)| angle_deg(normal(jet), exact)).collect()
+    jets.iter().zip(normals).map(|(jet, &exact)| error(normal(jet), exact)).collect()
 }
 
 fn at(mesh: &SubdivMesh, offset: f64, samples: &[(u32, f32, f32)], normals: &[DVec3]) -> Result<Vec<Row>, BenchError> {
@@ -60,7 +66,7 @@ fn at(mesh: &SubdivMesh, offset: f64, samples: &[(u32, f32, f32)], normals: &[DV
     let ours: Vec<f64> = rows
         .map(|(row, &index)| {
             let normal = results.normal(row).expect("asked for");
-            angle_deg(DVec3::from_array(normal.map(f64::from)), normals[index as usize])
+            error(DVec3::from_array(normal.map(f64::from)), normals[index as usize])
         })
         .collect();
 
@@ -69,7 +75,7 @@ fn at(mesh: &SubdivMesh, offset: f64, samples: &[(u32, f32, f32)], normals: &[DV
     f32::bfr(&mesh)?(&peer_samples, &mut jets);
     let bfr = of_jets(&jets, normals);
     let mut osd = OsdPeer::new(&mesh, MAX_ISOLATION)?;
-    osd.place(&peer_samples)?;
+    all_placed(osd.place(&peer_samples)?, samples.len())?;
     osd.evaluate(&mut jets)?;
     let osd = of_jets(&jets, normals);
     let embree = embree_jets(&mesh, samples)?.map(|jets| of_jets(&jets, normals));

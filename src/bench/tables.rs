@@ -1,65 +1,74 @@
 //! Rows that make tables, and move them.
 
-use super::{BenchError, Contest, Effort, Row, one_thread};
+use super::{BenchError, Contest, Unit, one_thread};
 use crate::gpu::Gpu;
 use crate::mesh::SubdivMesh;
 use crate::osd::{BfrPeer, EndCap, Far, Isolation, MAX_ISOLATION, OsdPeer};
-use crate::stam::{Evaluator, LimitSurface, MovingSurface};
+use crate::stam::{ClassTable, Evaluator, LimitSurface, MovingSurface};
 use std::hint::black_box;
 
 const DEEPEST: (u32, u32) = (MAX_ISOLATION, MAX_ISOLATION);
 
-pub(super) fn tables(mesh: &SubdivMesh, effort: Effort, gpu: &Gpu) -> Result<Vec<Row>, BenchError> {
-    // Whether anybody refuses the mesh.
-    gpu.upload(&LimitSurface::new(mesh)?)?;
-    Evaluator::<f32>::new(&LimitSurface::new(mesh)?)?;
+pub(super) fn tables<'a>(mesh: &'a SubdivMesh, gpu: Option<&'a Gpu>) -> Result<Vec<Contest<'a>>, BenchError> {
     let isolation = Isolation::uniform(MAX_ISOLATION);
+    // Whether anybody refuses the mesh.
+    let classes = LimitSurface::new(mesh)?.classes().to_vec();
+    gpu.map(|gpu| gpu.upload(&LimitSurface::new(mesh)?).map_err(BenchError::from)).transpose()?;
+    Evaluator::<f32>::new(&LimitSurface::new(mesh)?)?;
     Far::with(mesh, isolation, EndCap::Gregory)?;
     BfrPeer::<f64>::new(mesh, DEEPEST)?;
-    let per_face = 1e6 / mesh.face_count() as f64;
+    let cold = std::time::Instant::now();
+    classes.iter().for_each(|&class| _ = black_box(ClassTable::new(class)));
+    let cold = cold.elapsed().as_secs_f64() * 1e6 / mesh.face_count() as f64;
     let surface = || LimitSurface::new(mesh).expect("it had a surface");
-    let osd = || _ = black_box(Far::with(mesh, isolation, EndCap::Gregory).expect("it had a table"));
-    let bfr = || _ = black_box(BfrPeer::<f64>::new(mesh, DEEPEST).expect("it had surfaces"));
-    let row = |name, ours: &mut dyn FnMut(), note: &str| {
+    let contest = |name: &str, ours: Box<dyn Fn() + Send + Sync + 'a>, what: &str| {
         let note = format!(
-            "{} faces, mesh in memory to {note}, one thread; Osd: refinement, patch table and points at isolation 10; Bfr: surfaces of all faces at \
-             levels 10 and 10",
-            mesh.face_count()
+            "{} faces, mesh in memory to {what}, one thread; the matrices of {} classes are those of all meshes of the process, and made before: \
+             {cold:.1} us/face more in the first; Osd: refinement, patch table, points and patch map at isolation 10 in f64; Bfr: surfaces of all \
+             faces at levels 10 and 10 in f64",
+            mesh.face_count(),
+            classes.len(),
         );
-        let contest = Contest::new(ours).against("osd", osd).against("bfr", bfr);
-        contest.row(name, "us/face", per_face, note, effort)
+        let pool = one_thread();
+        Contest::new(name, Unit::microseconds_a_face(mesh.face_count()), note, move || pool.install(&ours))
+            .against("osd", move || _ = black_box(Far::with(mesh, isolation, EndCap::Gregory).expect("it had a table")))
+            .against("bfr", || _ = black_box(BfrPeer::<f64>::new(mesh, DEEPEST).expect("it had surfaces")))
     };
-    let pool = one_thread();
-    let mut on_adapter = || pool.install(|| _ = black_box(gpu.upload(&surface()).expect("it was uploaded")));
-    let mut in_memory = || pool.install(|| _ = black_box(Evaluator::<f32>::new(&surface()).expect("it had room")));
-    Ok(vec![
-        row("tables", &mut on_adapter, "tables on the adapter"),
-        row("tables_cpu", &mut in_memory, "the polynomials of Evaluator<f32>"),
-    ])
+    let on_adapter = gpu.map(|gpu| {
+        let ours = move || _ = black_box(gpu.upload(&surface()).expect("it was uploaded"));
+        contest("tables", Box::new(ours), "tables on the adapter, the copy counted in")
+    });
+    let ours = move || _ = black_box(Evaluator::<f32>::new(&surface()).expect("it had room"));
+    let in_memory = contest("tables_cpu", Box::new(ours), "the polynomials of Evaluator<f32>");
+    Ok(on_adapter.into_iter().chain([in_memory]).collect())
 }
 
-pub(super) fn update(mesh: &SubdivMesh, effort: Effort) -> Result<Vec<Row>, BenchError> {
-    let mut moving = MovingSurface::new(mesh)?;
-    let mut evaluator = Evaluator::<f32>::new(moving.surface())?;
-    let mut peers = [5, MAX_ISOLATION].map(|level| OsdPeer::new(mesh, level));
-    let [Ok(osd_5), Ok(osd_10)] = &mut peers else {
-        let refusal = peers.into_iter().find_map(Result::err);
-        return Err(refusal.expect("one of them refused").into());
-    };
+pub(super) fn update<'a>(mesh: &'a SubdivMesh) -> Result<Vec<Contest<'a>>, BenchError> {
     let points: Vec<[f32; 3]> = mesh.points.iter().map(|point| point.as_vec3().to_array()).collect();
-    let bytes = evaluator.bytes();
-    let mut written = vec![0u8; bytes];
-    let pool = one_thread();
-    let ours = || evaluator.update(moving.move_to(mesh).expect("the same topology"));
-    let mut ours = ours;
-    let contest = Contest::new(|| pool.install(&mut ours))
-        .against("osd", || osd_10.update(black_box(&points)).expect("it followed before"))
-        .against("osd_level_5", || osd_5.update(black_box(&points)).expect("it followed before"))
-        .floor(|| black_box(&mut written).fill(1));
-    let note = format!(
-        "{} control points move: refined points, then the {bytes} bytes of Evaluator<f32>; Osd: EvalStencils at isolation 10 and at 5; floor: writing \
-         those bytes; one thread",
-        mesh.points.len()
-    );
-    Ok(vec![contest.row("update", "ms", 1e3, note, effort)])
+    let contest = |name: &str, what: &str, bytes: usize, mut ours: Box<dyn FnMut() + Send + 'a>| {
+        let [mut deep, mut shallow] = [OsdPeer::new(mesh, MAX_ISOLATION)?, OsdPeer::new(mesh, 5)?];
+        let ([to_deep, to_shallow], pool) = ([(); 2].map(|()| points.clone()), one_thread());
+        let note = format!(
+            "{} control points move, one thread: {what}; Osd: EvalStencils in f32 at isolation 10 (osd) and 5; floor: writing the {bytes} bytes \
+             of the result",
+            points.len()
+        );
+        let mut written = vec![0u8; bytes];
+        Ok::<_, BenchError>(
+            Contest::new(name, Unit::MILLISECONDS, note, move || pool.install(&mut ours))
+                .against("osd", move || deep.update(black_box(&to_deep)).expect("it followed before"))
+                .against("osd_level_5", move || shallow.update(black_box(&to_shallow)).expect("it followed before"))
+                .floor(move || black_box(&mut written).fill(1)),
+        )
+    };
+    let [mut moving, mut followed] = [MovingSurface::new(mesh)?, MovingSurface::new(mesh)?];
+    let refined = moving.surface().refined_points() * size_of::<glam::DVec3>();
+    let move_to = move || _ = black_box(moving.move_to(mesh).expect("the same topology"));
+    let mut evaluator = Evaluator::<f32>::new(followed.surface())?;
+    let polynomials = evaluator.bytes();
+    let follow = move || evaluator.update(followed.move_to(mesh).expect("the same topology"));
+    Ok(vec![
+        contest("update", "refined points in f64, from which LimitSurface evaluates", refined, Box::new(move_to))?,
+        contest("update_evaluator", "these, and the polynomials of Evaluator<f32>", polynomials, Box::new(follow))?,
+    ])
 }

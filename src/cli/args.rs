@@ -66,6 +66,9 @@ pub(super) struct BenchArgs {
     /// See that all works: few samples, one turn; the figures say little
     #[arg(long)]
     pub quick: bool,
+    /// What this file takes, in this process, of catoptric or osd: for the row `scale`
+    #[arg(long, value_name = "NAME", hide = true, requires = "mesh", value_parser = super::bench::contender)]
+    pub stages: Option<crate::bench::Contender>,
 }
 
 #[derive(Debug, Args)]

@@ -2,7 +2,7 @@
 
 use super::args::BenchArgs;
 use super::{Failure, write_out};
-use crate::bench::{self, Effort, Row, Work};
+use crate::bench::{self, Contender, Effort, Means, Row, Stages, Work};
 use crate::gpu::Gpu;
 use crate::output::check_writable;
 use crate::statistics::short;
@@ -26,6 +26,11 @@ pub(super) fn work(name: &str) -> Result<Work, String> {
     Work::ALL.into_iter().find(|work| work.name() == name).ok_or_else(|| format!("no row {name}: give {}", names()))
 }
 
+/// The contender of this name.
+pub(super) fn contender(name: &str) -> Result<Contender, String> {
+    Contender::ALL.into_iter().find(|contender| contender.name() == name).ok_or_else(|| format!("no contender {name}"))
+}
+
 /// Processor, and the cores that are used.
 fn machine() -> String {
     let Ok(mut system) = sysinfo::System::new() else { return "unknown".to_owned() };
@@ -35,6 +40,10 @@ fn machine() -> String {
 }
 
 pub(super) fn run(args: &BenchArgs) -> Result<(), Failure> {
+    if let (Some(contender), Some(path)) = (args.stages, &args.mesh) {
+        let stages = Stages::of(contender, path).map_err(|error| Failure::Bad(error.to_string()))?;
+        return write_out(None, serde_json::to_string(&stages).expect("numbers and names").as_bytes());
+    }
     args.json.as_deref().map_or(Ok(()), check_writable)?;
     let mesh = args.scene.load_quads(args.mesh.as_deref(), "bench")?;
     let gpu = match Gpu::new() {
@@ -44,9 +53,11 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), Failure> {
     };
     let effort = if args.quick { Effort::QUICK } else { Effort::FULL };
     let all = if args.only.is_empty() { &Work::ALL[..] } else { &args.only };
+    let program = std::env::current_exe().ok();
+    let means = Means { gpu: gpu.as_ref(), program: program.as_deref() };
     let mut results = Vec::new();
     for &work in all {
-        let rows = bench::measure(work, &mesh, effort, gpu.as_ref()).map_err(|error| Failure::of(&mesh, error))?;
+        let rows = bench::measure(work, &mesh, effort, means).map_err(|error| Failure::of(&mesh, error))?;
         results.extend(rows);
     }
     let report = Report {

@@ -4,7 +4,6 @@ use super::Failure;
 use crate::memory;
 use bytesize::ByteSize;
 use clap::Args;
-use sysinfo::{MemoryRefreshKind, RefreshKind, System};
 
 #[derive(Debug, Args)]
 pub(super) struct MemoryArgs {
@@ -25,20 +24,11 @@ impl MemoryArgs {
                 Ok(())
             }
             None => {
-                if let Some(free) = free() {
+                if let Some(free) = memory::free() {
                     memory::set_limit(free);
                 }
                 Ok(())
             }
         }
     }
-}
-
-/// What the system has to give, or all that it gives to this process's group (of which caches, that it takes back, count as
-/// used); `None` where it does not say.
-fn free() -> Option<u64> {
-    let memory = RefreshKind::nothing().with_memory(MemoryRefreshKind::nothing().with_ram());
-    let system = System::new_with_specifics(memory).ok()?;
-    let group = system.cgroup_limits().map_or(u64::MAX, |limits| limits.total_memory);
-    Some(system.available_memory().min(group)).filter(|&bytes| bytes > 0)
 }

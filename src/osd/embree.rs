@@ -17,6 +17,8 @@ pub struct EmbreeSamples {
     faces: Vec<u32>,
     u: Vec<f32>,
     v: Vec<f32>,
+    /// Control faces of the mesh.
+    of: usize,
 }
 
 impl EmbreeSamples {
@@ -27,7 +29,7 @@ impl EmbreeSamples {
     pub fn new(mesh: &SubdivMesh, samples: &[(u32, f32, f32)]) -> Self {
         let ptex: Vec<(u32, Option<u32>)> =
             (0..).zip(&mesh.face_sizes).flat_map(|(face, &size)| of_face(face, size)).collect();
-        let mut out = Self::default();
+        let mut out = Self { of: mesh.face_count(), ..Self::default() };
         for &(at, u, v) in samples {
             let (face, quadrant) = ptex[at as usize];
             let encoded = |cell: u32, t: f32| 2.0 * cell as f32 + 0.5 + t;
@@ -107,10 +109,10 @@ impl EmbreeSubdivision {
     /// Embree reports an error.
     ///
     /// # Panics
-    /// `out` has less than [`EmbreeSamples::room`], or the samples are of another mesh.
+    /// `out` has less than [`EmbreeSamples::room`], or the samples are of a mesh with more faces.
     pub fn evaluate(&self, samples: &EmbreeSamples, out: &mut [f32]) -> Result<(), Error> {
         assert!(out.len() >= samples.room(), "room for all results");
-        assert!(samples.faces.iter().all(|&face| (face as usize) < self.faces), "faces are in range");
+        assert!(samples.of <= self.faces, "faces are in range");
         let count = int(samples.faces.len(), "number of samples")?;
         let (faces, u, v) = (samples.faces.as_ptr(), samples.u.as_ptr(), samples.v.as_ptr());
         // SAFETY: the handle is live; the arrays are sized by `count` and `out` holds whole batches; faces are in range.

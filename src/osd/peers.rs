@@ -11,6 +11,7 @@ use std::ptr::NonNull;
 pub struct PeerSamples<T> {
     faces: Vec<i32>,
     uv: Vec<[T; 2]>,
+    ptex_count: usize,
 }
 
 impl<T: Copy> PeerSamples<T> {
@@ -23,6 +24,7 @@ impl<T: Copy> PeerSamples<T> {
         Self {
             faces: samples.iter().map(|sample| sample.0 as i32).collect(),
             uv: samples.iter().map(|sample| [sample.1, sample.2]).collect(),
+            ptex_count,
         }
     }
 
@@ -87,10 +89,10 @@ impl<T: sealed::Precision> BfrPeer<T> {
     /// OpenSubdiv reports an error.
     ///
     /// # Panics
-    /// A face is out of range, or there are not as many jets as samples.
+    /// The samples are of a mesh with more ptex faces, or there are not as many jets as samples.
     pub fn evaluate(&self, samples: &PeerSamples<T>, jets: &mut [[[T; 3]; 3]]) -> Result<(), Error> {
         assert_eq!(samples.len(), jets.len(), "one jet a sample");
-        assert!(samples.faces.iter().all(|&face| (face as usize) < self.ptex_count), "ptex faces are in range");
+        assert!(samples.ptex_count <= self.ptex_count, "ptex faces are in range");
         let count = int(samples.len(), "number of samples")?;
         let (faces, uv) = (samples.faces.as_ptr(), samples.uv.as_ptr());
         // SAFETY: the handle is live; the arrays are sized by `count` and of the peer's number type; faces are in range.
@@ -142,16 +144,24 @@ impl OsdPeer {
         check(unsafe { raw::osd_cpu_update(self.handle.as_ptr(), points.as_ptr().cast()) })
     }
 
-    /// Finds the patches of samples, which replace those of before; samples in holes are left out.
+    /// Finds the patches of samples, which replace those of before; samples in holes are left out. How many have patches.
     ///
     /// # Errors
     /// OpenSubdiv reports an error.
-    pub fn place(&mut self, samples: &PeerSamples<f32>) -> Result<(), Error> {
+    pub fn place(&mut self, samples: &PeerSamples<f32>) -> Result<usize, Error> {
         let count = int(samples.len(), "number of samples")?;
         let (faces, uv) = (samples.faces.as_ptr(), samples.uv.as_ptr().cast());
         // SAFETY: the handle is live and borrowed mutably; the arrays are sized by `count`. Faces beyond its own have no patch in
         // Far::PatchMap, which checks.
-        check(unsafe { raw::osd_cpu_place(self.handle.as_ptr(), count, faces, uv) })
+        check(unsafe { raw::osd_cpu_place(self.handle.as_ptr(), count, faces, uv) })?;
+        self.placed()
+    }
+
+    fn placed(&self) -> Result<usize, Error> {
+        let mut placed = 0;
+        // SAFETY: the handle is live and the output is a local.
+        check(unsafe { raw::osd_cpu_placed(self.handle.as_ptr(), &mut placed) })?;
+        Ok(placed as usize)
     }
 
     /// Position, du and dv of the samples that were placed; derivatives in quadrants of n-gons come twice as long.
@@ -162,10 +172,7 @@ impl OsdPeer {
     /// # Panics
     /// There are fewer jets than samples were placed.
     pub fn evaluate(&self, jets: &mut [[[f32; 3]; 3]]) -> Result<(), Error> {
-        let mut placed = 0;
-        // SAFETY: the handle is live and the output is a local.
-        check(unsafe { raw::osd_cpu_placed(self.handle.as_ptr(), &mut placed) })?;
-        assert!(placed as usize <= jets.len(), "one jet a sample");
+        assert!(self.placed()? <= jets.len(), "one jet a sample");
         // SAFETY: the handle is live; the array has room for all samples that were placed.
         check(unsafe { raw::osd_cpu_evaluate(self.handle.as_ptr(), jets.as_mut_ptr().cast()) })
     }

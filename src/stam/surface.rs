@@ -237,6 +237,11 @@ impl LimitSurface {
         self.points[vertex as usize]
     }
 
+    /// Number of refined points, of all levels.
+    pub(crate) fn refined_points(&self) -> usize {
+        self.points.len()
+    }
+
     /// The same patches over other refined points, those of all levels.
     pub(crate) fn with_refined(&self, points: Vec<DVec3>) -> Self {
         Self { points: Arc::new(points), ..self.clone() }
