@@ -1,7 +1,8 @@
 //! A headless Vulkan device.
 
 use super::GpuError;
-use std::sync::{Arc, Mutex};
+use super::pool::Pool;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Which adapter to use.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -52,6 +53,9 @@ pub(super) struct Device {
     pub limits: wgpu::Limits,
     /// Rows of a block of a table, a power of two.
     pub block_rows: u32,
+    /// What passes write.
+    pub pool: Pool,
+    staging: Mutex<Option<wgpu::Buffer>>,
     /// First error that wgpu reported outside a call that returns one.
     error: Arc<Mutex<Option<String>>>,
 }
@@ -84,7 +88,16 @@ impl Device {
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
             slot.lock().unwrap_or_else(|e| e.into_inner()).get_or_insert(error.to_string());
         }));
-        Ok(Device { device, queue, info: adapter.get_info(), limits, block_rows, error })
+        Ok(Device {
+            device,
+            queue,
+            info: adapter.get_info(),
+            limits,
+            block_rows,
+            pool: Pool::default(),
+            staging: Mutex::default(),
+            error,
+        })
     }
 
     /// Submits and waits; reports what wgpu reported meanwhile.
@@ -146,10 +159,29 @@ impl Device {
 
     /// Reads a whole texture back, rows from top to bottom without padding. `T` is one texel.
     pub fn read_texture<T: bytemuck::Pod>(&self, texture: &wgpu::Texture) -> Result<Vec<T>, GpuError> {
-        let (width, height) = (texture.width(), texture.height());
-        let row = width as usize * size_of::<T>();
+        let (width, height) = (texture.width() as usize, texture.height() as usize);
+        let mut out = vec![T::zeroed(); width * height];
+        self.read_rows(texture, size_of::<T>(), |rows| {
+            for (target, source) in out.chunks_exact_mut(width).zip(rows) {
+                bytemuck::cast_slice_mut(target).copy_from_slice(source);
+            }
+        })?;
+        Ok(out)
+    }
+
+    /// Hands the rows of a texture, from top to bottom, to `read`; `texel` bytes a texel.
+    pub fn read_rows(
+        &self,
+        texture: &wgpu::Texture,
+        texel: usize,
+        read: impl FnOnce(&mut dyn Iterator<Item = &[u8]>),
+    ) -> Result<(), GpuError> {
+        let row = texture.width() as usize * texel;
         let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT as usize);
-        let staging = self.staging((padded * height as usize) as u64);
+        let size = (padded * texture.height() as usize) as u64;
+        // What the last picture was read through serves the next one.
+        let mut kept = self.staging.lock().unwrap_or_else(PoisonError::into_inner);
+        let staging = kept.take().filter(|staging| staging.size() == size).unwrap_or_else(|| self.staging(size));
         let mut encoder = self.encoder();
         encoder.copy_texture_to_buffer(
             texture.as_image_copy(),
@@ -165,12 +197,12 @@ impl Device {
         );
         self.submit(encoder)?;
         self.read_staging(&staging, |bytes| {
-            let mut out = vec![T::zeroed(); (width * height) as usize];
-            for (target, source) in out.chunks_exact_mut(width as usize).zip(bytes.chunks_exact(padded)) {
-                bytemuck::cast_slice_mut(target).copy_from_slice(&source[..row]);
-            }
-            Ok(out)
-        })
+            read(&mut bytes.chunks_exact(padded).map(|padded| &padded[..row]));
+            Ok(())
+        })?;
+        staging.unmap();
+        *kept = Some(staging);
+        Ok(())
     }
 
     fn staging(&self, size: u64) -> wgpu::Buffer {

@@ -150,8 +150,8 @@ fn draw<T: bytemuck::Pod>(
     };
     for own in tiles {
         let tile = own.grown(size);
-        let mut visible = Visible::new(device, &tile, view.pipeline);
-        let picture = PictureTargets::new(device, &tile, colour);
+        let mut visible = Visible::new(device, &device.pool, &tile, view.pipeline);
+        let picture = PictureTargets::new(device, &device.pool, &tile, colour);
         let scene = &scenes.see(passes, &mut visible, &tile, &mut timings)?;
         let stage = choose_stage(device, passes, scene, &visible, &picture)?;
         timings
@@ -163,9 +163,7 @@ fn draw<T: bytemuck::Pod>(
             let bits = crop(&bits, [tile.origin, tile.size], [own.origin, own.size]);
             *summary = summary.and(timings.time("certificates", || Summary::of_bits(&bits)));
         }
-        let pixels: Vec<T> = timings.time("read back", || device.read_texture(&picture.colour))?;
-        let [origin, own_size] = own.pixels();
-        paste(&mut whole, size, &crop(&pixels, tile.pixels(), own.pixels()), origin, own_size);
+        timings.time("read back", || read_own(device, &picture.colour, [&tile, &own], &mut whole, size))?;
     }
     Ok(Drawn { pixels: whole, summary, timings })
 }
@@ -185,7 +183,7 @@ pub(super) fn inspect(
     let size = view.camera.size;
     let mut image = SurfaceImage::empty(size);
     for tile in Tile::cover(size, 1, scenes.side(Tile::SURFACE_SIDE)) {
-        let mut visible = Visible::new(device, &tile, view.pipeline);
+        let mut visible = Visible::new(device, &device.pool, &tile, view.pipeline);
         let surface = SurfaceTargets::new(device, &tile);
         let scene = &scenes.see(passes, &mut visible, &tile, &mut timings)?;
         timings.time(limit_step(view), || passes::limit::run_full(device, passes, scene, &visible, &surface))?;
@@ -278,6 +276,26 @@ pub(super) fn read_tile(
     };
     paste(&mut image.certificate, size, &certificate, tile.origin, tile.size);
     Ok(())
+}
+
+/// Reads what of a tile is its own into the picture.
+fn read_own<T: bytemuck::Pod>(
+    device: &Device,
+    texture: &wgpu::Texture,
+    [tile, own]: [&Tile; 2],
+    whole: &mut [T],
+    size: [u32; 2],
+) -> Result<(), GpuError> {
+    let ([from, _], [to, [width, height]]) = (tile.pixels(), own.pixels());
+    let [left, top] = [0, 1].map(|k| (to[k] - from[k]) as usize);
+    let width = width as usize;
+    device.read_rows(texture, size_of::<T>(), |rows| {
+        for (y, row) in rows.skip(top).take(height as usize).enumerate() {
+            let at = (to[1] as usize + y) * size[0] as usize + to[0] as usize;
+            let part = &row[left * size_of::<T>()..(left + width) * size_of::<T>()];
+            bytemuck::cast_slice_mut(&mut whole[at..at + width]).copy_from_slice(part);
+        }
+    })
 }
 
 /// The part of a rectangle, given by origin and size, that lies in a smaller one.

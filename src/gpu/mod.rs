@@ -21,6 +21,7 @@ mod fields;
 mod frame;
 mod paper;
 mod passes;
+mod pool;
 mod proxy;
 pub mod records;
 mod scenes;

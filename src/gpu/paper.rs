@@ -17,6 +17,7 @@ use super::device::Device;
 use super::frame::{Drawn, SurfaceImage, Timings, choose_stage, read_tile};
 use super::passes::points::{Cloud, Landing};
 use super::passes::{self, Colour, Passes, PictureTargets, Scene, SurfaceTargets, Visible};
+use super::pool::Pool;
 use super::view::{Tile, View};
 use super::{GpuError, Tables};
 use std::array::from_fn;
@@ -40,8 +41,8 @@ pub(super) fn draw<T: bytemuck::Pod>(
     let landing = Landing::new(device, &whole, colour);
     let rectangle = timings.time("rectangle", || passes::rectangle::run(device, passes, &scene, &whole))?;
     for tile in parts(rectangle, view.enlarge, view.samples, Tile::PICTURE_SIDE) {
-        let visible = Visible::new(device, &tile, view.pipeline);
-        let texels = PictureTargets::new(device, &tile, colour);
+        let visible = Visible::new(device, &device.pool, &tile, view.pipeline);
+        let texels = PictureTargets::new(device, &device.pool, &tile, colour);
         timings.time("visibility", || passes::visibility::run(device, passes, &scene, &visible, &tile))?;
         let position = timings.time("position", || passes::points::run_position(device, passes, &scene, &visible))?;
         let stage = choose_stage(device, passes, &scene, &visible, &texels)?;
@@ -67,10 +68,11 @@ pub(super) fn inspect(
     let mut timings = Timings::default();
     let scene = timings.time("scene", || Scene::new(device, tables, view))?;
     let whole = whole(view, 1);
-    let landed = Visible::new(device, &whole, view.pipeline);
+    // Nothing has landed yet: new textures are zero.
+    let landed = Visible::new(device, &Pool::default(), &whole, view.pipeline);
     let rectangle = timings.time("rectangle", || passes::rectangle::run(device, passes, &scene, &whole))?;
     for tile in parts(rectangle, view.enlarge, 1, Tile::SURFACE_SIDE) {
-        let visible = Visible::new(device, &tile, view.pipeline);
+        let visible = Visible::new(device, &device.pool, &tile, view.pipeline);
         timings.time("visibility", || passes::visibility::run(device, passes, &scene, &visible, &tile))?;
         let position = timings.time("position", || passes::points::run_position(device, passes, &scene, &visible))?;
         let cloud = Cloud { visible: &visible, position: &position };

@@ -18,12 +18,13 @@
 use super::loop_modes;
 use super::loop_rows::{LOOP_WINDOW, LoopRows};
 use super::modes::Modes;
+use super::product::{Products, ROWS};
 use super::rows::{Row, Rows};
 use super::surface::combine;
 use crate::kept::Kept;
 use crate::patch::RingClass;
 use glam::DVec3;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Levels kept in f64: the smallest u or v above zero that doubles near 1 resolve.
 pub const LEVELS: usize = 52;
@@ -32,11 +33,11 @@ pub const LEVELS: usize = 52;
 /// [`LOOP_WINDOW`](super::LOOP_WINDOW).
 pub const WINDOW_POINTS: usize = 24;
 
-/// Faces up to which a class keeps its matrices: their memory is 20 kB a face, and a sector of k faces has k classes.
+/// Faces up to which a class keeps its matrices: their memory is 30 kB a face, and a sector of k faces has k classes.
 /// Beyond, levels are computed by stepping.
 const KEPT_FACES: u16 = 16;
 
-/// Faces up to which a class is kept for other meshes: a hundred classes, 25 MB when all have come up.
+/// Faces up to which a class is kept for other meshes: a hundred classes, 40 MB when all have come up.
 const SHARED_FACES: u16 = 8;
 
 /// Classes that came up.
@@ -62,7 +63,12 @@ pub struct ClassTable {
     windows: Vec<Row>,
     /// Mhat(n) at `levels[n-1]`, a row of K weights for each window point: Phat(n) = Mhat(n) C. Empty for large classes.
     levels: Vec<Vec<f64>>,
+    /// The first levels once more, for products: a column of all their points for each control point.
+    columns: OnceLock<Vec<f64>>,
 }
+
+/// Levels that are computed together.
+const TOGETHER: usize = 24;
 
 impl ClassTable {
     /// Builds the matrices of a class.
@@ -77,7 +83,8 @@ impl ClassTable {
         };
         let limit = left_eigenvector_of_one(&step);
         let Modes { lambda, tangents, spare } = modes;
-        let mut table = Self { class, lambda, limit, tangents, spare, step, windows, levels: Vec::new() };
+        let mut table =
+            Self { class, lambda, limit, tangents, spare, step, windows, levels: Vec::new(), columns: OnceLock::new() };
         if class.faces <= KEPT_FACES {
             table.levels = table.matrices();
         }
@@ -142,6 +149,27 @@ impl ClassTable {
         let size = self.limit.len();
         let rows = &self.levels[level - 1];
         std::array::from_fn(|point| combine(&rows[point * size..(point + 1) * size], points))
+    }
+
+    /// Phat(1) to Phat(`levels`) of a class of quads, `levels` up to [`LEVELS`], as [`level_points`](Self::level_points).
+    pub fn all_level_points(&self, levels: usize, points: &[DVec3]) -> Vec<[DVec3; WINDOW_POINTS]> {
+        let together = if self.levels.is_empty() { 0 } else { levels.min(TOGETHER) };
+        let mut out = Vec::with_capacity(levels);
+        if together > 0 {
+            let mut products = Products::default();
+            products.take(points.iter().copied());
+            let rows = (together * WINDOW_POINTS).next_multiple_of(ROWS);
+            let [x, y, z] = products.multiply(self.columns(), TOGETHER * WINDOW_POINTS, rows);
+            let point = |k: usize| DVec3::new(x[k], y[k], z[k]);
+            out.extend((0..together).map(|level| std::array::from_fn(|k| point(level * WINDOW_POINTS + k))));
+        }
+        out.extend((together + 1..=levels).map(|level| self.level_points(level, points)));
+        out
+    }
+
+    fn columns(&self) -> &[f64] {
+        let column = |k: usize| self.levels[..TOGETHER].iter().flatten().skip(k).step_by(self.limit.len()).copied();
+        self.columns.get_or_init(|| (0..self.limit.len()).flat_map(column).collect())
     }
 
     /// Phat(n) of a class of triangles, at the places of [`LOOP_WINDOW`](super::LOOP_WINDOW).
@@ -332,8 +360,11 @@ pub(super) mod tests {
             let points = points(&kept);
             for level in [1, 2, 7, 30, LEVELS] {
                 let [a, b] = [&kept, &stepping].map(|table| table.level_points(level, &points));
-                for (a, b) in a.iter().zip(&b) {
+                let together = kept.all_level_points(level, &points);
+                assert_eq!(together.len(), level);
+                for ((a, b), c) in a.iter().zip(&b).zip(&together[level - 1]) {
                     assert!(a.distance(*b) < 1e-12, "{class:?} level {level}: {a} {b}");
+                    assert!(a.distance(*c) < 1e-14, "{class:?} level {level}: {a} {c}");
                 }
             }
         }

@@ -15,16 +15,19 @@ mod loop_rows;
 mod loop_surface;
 mod modes;
 mod moving;
+mod product;
+mod real;
 mod rings;
 mod rows;
 mod surface;
 
 pub use class::{ClassTable, LEVELS, WINDOW_POINTS};
 pub use curvature::Curvature;
-pub use evaluator::{Column, Columns, Evaluator, PIECE_LEVELS, Real, Results, Samples, Wanted};
+pub use evaluator::{Column, Columns, Evaluator, PIECE_LEVELS, Results, Samples, Wanted};
 pub use loop_rows::LOOP_WINDOW;
 pub use loop_surface::{LOOP_WINDOWS, LoopWindow};
 pub use moving::{MoveError, MovingSurface};
+pub use real::Real;
 pub use rings::{Grid, Rings, WINDOWS};
 pub use surface::{LimitSurface, Net};
 

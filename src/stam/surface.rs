@@ -337,8 +337,7 @@ impl LimitSurface {
             let levels = (1..=levels).map(|level| table.loop_level_points(level, &points)).collect();
             return Net::IrregularTriangle { limit, lambda: table.lambda, levels };
         }
-        let levels = (1..=levels).map(|level| table.level_points(level, &points)).collect();
-        Net::Irregular { limit, lambda: table.lambda, levels }
+        Net::Irregular { limit, lambda: table.lambda, levels: table.all_level_points(levels, &points) }
     }
 }
 

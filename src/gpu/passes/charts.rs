@@ -59,7 +59,7 @@ pub fn run(device: &Device, passes: &Passes, charts: &Charts, visible: &Visible)
         (0..4 * charts.charts.len() as u32).step_by(4).flat_map(|k| [0, 1, 2, 2, 1, 3].map(|i| k + i)).collect();
     let indices = device.buffer("the corners of the charts", &corners, BufferUsages::INDEX)?;
     let points = device.buffer("the samples solved", &charts.specks, BufferUsages::VERTEX)?;
-    let targets = [&visible.patch, &visible.uv, certificate].map(whole);
+    let targets = [&visible.patch, &visible.uv, certificate].map(|target| whole(target));
     let mut attachments = targets.each_ref().map(cleared);
     let mut load_depth = wgpu::LoadOp::Clear(0.0);
     if charts.is_rest {

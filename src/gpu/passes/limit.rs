@@ -61,7 +61,7 @@ pub fn run_full(
     visible: &Visible,
     surface: &SurfaceTargets,
 ) -> Result<(), GpuError> {
-    let targets = [&surface.position, &surface.normal, &surface.field];
+    let targets: [&wgpu::Texture; 3] = [&surface.position, &surface.normal, &surface.field];
     let passes = &*passes.field(&scene.view.field);
     draw(device, pipeline_full(passes, device, scene.view.pipeline), scene, visible, &targets)
 }
@@ -112,7 +112,7 @@ fn groups(
     resources.extend(grid.iter().map(|grid| (5, TextureView(grid))));
     let patch = whole(&visible.patch);
     let inputs: Vec<_> = match &visible.proxy {
-        Some(proxy) => proxy.iter().map(whole).collect(),
+        Some(proxy) => proxy.iter().map(|target| whole(target)).collect(),
         None => {
             resources.extend([(0, TextureView(&records)), (1, TextureView(&points)), (2, TextureView(&scales))]);
             vec![whole(&visible.uv)]

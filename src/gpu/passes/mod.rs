@@ -11,6 +11,7 @@ pub mod shade;
 pub mod visibility;
 
 use super::device::Device;
+use super::pool::{Pool, Target};
 use super::proxy::Proxy;
 use super::shader::{Content, Module, TILE_SIDE};
 use super::view::Tile;
@@ -121,30 +122,30 @@ impl Scene<'_> {
 /// What the visibility pass writes.
 pub(super) struct Visible {
     /// Patch id + 1.
-    pub patch: wgpu::Texture,
-    pub uv: wgpu::Texture,
+    pub patch: Target,
+    pub uv: Target,
     /// Above 0 where there is surface: the mask of the passes that follow.
-    pub depth: wgpu::Texture,
+    pub depth: Target,
     /// How the exact pipeline came to each point.
-    pub certificate: Option<wgpu::Texture>,
+    pub certificate: Option<Target>,
     /// Position and normal of the proxy, for the polygon pipeline.
-    proxy: Option<[wgpu::Texture; 2]>,
+    proxy: Option<[Target; 2]>,
 }
 
 /// What the limit pass writes when all of it is read back.
 pub(super) struct SurfaceTargets {
-    pub position: wgpu::Texture,
-    pub normal: wgpu::Texture,
-    pub field: wgpu::Texture,
+    pub position: Target,
+    pub normal: Target,
+    pub field: Target,
 }
 
 /// What the passes of a picture write.
 pub(super) struct PictureTargets {
     /// Field value, normal and angles, packed.
-    pub surface: wgpu::Texture,
+    pub surface: Target,
     /// Shaded samples, linear, with coverage in alpha.
-    samples: wgpu::Texture,
-    pub colour: wgpu::Texture,
+    samples: Target,
+    pub colour: Target,
 }
 
 const PATCH_FORMAT: TextureFormat = TextureFormat::R32Uint;
@@ -173,7 +174,7 @@ impl Colour {
     }
 }
 
-fn target(device: &Device, size: [u32; 2], format: TextureFormat) -> wgpu::Texture {
+fn target(device: &Device, pool: &Pool, size: [u32; 2], format: TextureFormat) -> Target {
     // What compute stages write.
     let storage = match format {
         PACKED_FORMAT | SAMPLE_FORMAT => TextureUsages::STORAGE_BINDING,
@@ -181,7 +182,7 @@ fn target(device: &Device, size: [u32; 2], format: TextureFormat) -> wgpu::Textu
         PATCH_FORMAT => TextureUsages::COPY_DST,
         _ => TextureUsages::empty(),
     };
-    device.device.create_texture(&wgpu::TextureDescriptor {
+    let descriptor = wgpu::TextureDescriptor {
         label: None,
         size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
         mip_level_count: 1,
@@ -190,12 +191,13 @@ fn target(device: &Device, size: [u32; 2], format: TextureFormat) -> wgpu::Textu
         format,
         usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC | storage,
         view_formats: &[],
-    })
+    };
+    pool.take(&device.device, &descriptor)
 }
 
 impl Visible {
-    pub fn new(device: &Device, tile: &Tile, pipeline: Pipeline) -> Visible {
-        let texture = |format| target(device, tile.size, format);
+    pub fn new(device: &Device, pool: &Pool, tile: &Tile, pipeline: Pipeline) -> Visible {
+        let texture = |format| target(device, pool, tile.size, format);
         Visible {
             patch: texture(PATCH_FORMAT),
             uv: texture(UV_FORMAT),
@@ -218,17 +220,17 @@ impl Visible {
 
 impl SurfaceTargets {
     pub fn new(device: &Device, tile: &Tile) -> SurfaceTargets {
-        let texture = || target(device, tile.size, SURFACE_FORMAT);
+        let texture = || target(device, &device.pool, tile.size, SURFACE_FORMAT);
         SurfaceTargets { position: texture(), normal: texture(), field: texture() }
     }
 }
 
 impl PictureTargets {
-    pub fn new(device: &Device, tile: &Tile, colour: Colour) -> PictureTargets {
+    pub fn new(device: &Device, pool: &Pool, tile: &Tile, colour: Colour) -> PictureTargets {
         PictureTargets {
-            surface: target(device, tile.size, PACKED_FORMAT),
-            samples: target(device, tile.size, SAMPLE_FORMAT),
-            colour: target(device, tile.pixels()[1], colour.format()),
+            surface: target(device, pool, tile.size, PACKED_FORMAT),
+            samples: target(device, pool, tile.size, SAMPLE_FORMAT),
+            colour: target(device, pool, tile.pixels()[1], colour.format()),
         }
     }
 }

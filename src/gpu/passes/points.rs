@@ -5,6 +5,7 @@ use super::{
 };
 use super::{DEPTH_FORMAT, PACKED_FORMAT, PATCH_FORMAT, SAMPLE_FORMAT, SURFACE_FORMAT, UV_FORMAT};
 use crate::gpu::device::Device;
+use crate::gpu::pool::{Pool, Target};
 use crate::gpu::view::Tile;
 use crate::gpu::{GpuError, shader::POINTS};
 use wgpu::BindingResource::TextureView;
@@ -38,18 +39,19 @@ fn create(passes: &Passes, device: &Device, entry: &str, formats: &[wgpu::Textur
 /// Where the points land: the whole picture. Starts empty, as new textures are zero and so is the depth of nothing.
 pub struct Landing {
     pub picture: PictureTargets,
-    depth: wgpu::Texture,
+    depth: Target,
 }
 
 impl Landing {
     pub fn new(device: &Device, tile: &Tile, colour: Colour) -> Landing {
+        let pool = &Pool::default();
         let picture = PictureTargets {
             // Colours arrive finished.
-            surface: target(device, [1, 1], PACKED_FORMAT),
-            samples: target(device, tile.size, SAMPLE_FORMAT),
-            colour: target(device, tile.pixels()[1], colour.format()),
+            surface: target(device, pool, [1, 1], PACKED_FORMAT),
+            samples: target(device, pool, tile.size, SAMPLE_FORMAT),
+            colour: target(device, pool, tile.pixels()[1], colour.format()),
         };
-        Landing { picture, depth: target(device, tile.size, DEPTH_FORMAT) }
+        Landing { picture, depth: target(device, pool, tile.size, DEPTH_FORMAT) }
     }
 }
 
@@ -59,17 +61,17 @@ pub fn run_position(
     passes: &Passes,
     scene: &Scene<'_>,
     visible: &Visible,
-) -> Result<wgpu::Texture, GpuError> {
+) -> Result<Target, GpuError> {
     let pipeline = position_pipeline(passes, device);
     let [records, points, scales, _] = scene.table_views();
     let tables = [(0, TextureView(&records)), (1, TextureView(&points)), (2, TextureView(&scales))];
-    let [patch, uv] = [&visible.patch, &visible.uv].map(whole);
+    let [patch, uv] = [&visible.patch, &visible.uv].map(|target| whole(target));
     let groups = [
         bind(device, pipeline.get_bind_group_layout(0), &tables),
         bind(device, pipeline.get_bind_group_layout(1), &[(1, TextureView(&patch)), (2, TextureView(&uv))]),
     ];
     let size = [visible.patch.width(), visible.patch.height()];
-    let position = target(device, size, SURFACE_FORMAT);
+    let position = target(device, &device.pool, size, SURFACE_FORMAT);
     draw_fullscreen(device, pipeline, &groups, &[&position], Some(&visible.depth))?;
     Ok(position)
 }
@@ -90,7 +92,7 @@ pub fn run(
     landing: &Landing,
     tile: &Tile,
 ) -> Result<(), GpuError> {
-    let targets = [&landing.picture.samples];
+    let targets: [&wgpu::Texture; 1] = [&landing.picture.samples];
     let transfer = Transfer { input: (4, &texels.samples), targets: &targets, depth: &landing.depth };
     draw(device, pipeline(passes, device), scene, cloud, &transfer, tile)
 }
@@ -104,7 +106,7 @@ pub fn run_full(
     landed: &Visible,
     tile: &Tile,
 ) -> Result<(), GpuError> {
-    let targets = [&landed.patch, &landed.uv];
+    let targets: [&wgpu::Texture; 2] = [&landed.patch, &landed.uv];
     let transfer = Transfer { input: (2, &cloud.visible.uv), targets: &targets, depth: &landed.depth };
     draw(device, pipeline_full(passes, device), scene, cloud, &transfer, tile)
 }
@@ -127,8 +129,8 @@ fn draw(
     let Transfer { input, targets, depth } = *transfer;
     let frame = device.buffer("the frame", &[scene.view.frame_record(scene.tables, tile)], BufferUsages::UNIFORM)?;
     let [.., patch_views] = scene.table_views();
-    let inputs =
-        [(1, &cloud.visible.patch), (3, cloud.position), input].map(|(binding, texture)| (binding, whole(texture)));
+    let inputs: [(u32, &wgpu::Texture); 3] = [(1, &cloud.visible.patch), (3, cloud.position), input];
+    let inputs = inputs.map(|(binding, texture)| (binding, whole(texture)));
     let inputs = inputs.each_ref().map(|(binding, view)| (*binding, TextureView(view)));
     let groups = [
         bind(

@@ -103,8 +103,11 @@ pub fn run(
         .iter()
         .map(|(_, record)| bind(device, pipeline.get_bind_group_layout(1), &[(0, record.as_entire_binding())]))
         .collect();
-    let views: Vec<_> =
-        [&visible.patch, &visible.uv].into_iter().chain(visible.proxy.iter().flatten()).map(whole).collect();
+    let views: Vec<_> = [&visible.patch, &visible.uv]
+        .into_iter()
+        .chain(visible.proxy.iter().flatten())
+        .map(|target| whole(target))
+        .collect();
     let attachments: Vec<_> = views.iter().map(cleared).collect();
     let depth = whole(&visible.depth);
     let mut encoder = device.encoder();

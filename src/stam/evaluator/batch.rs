@@ -3,8 +3,8 @@
 use super::columns::Column;
 use super::normal::{Normals, longest_product};
 use super::polynomial::{Piece, Run};
-use super::real::Real;
 use super::samples::Samples;
+use crate::stam::real::Real;
 use pulp::{Simd, WithSimd};
 use std::ops::Range;
 

@@ -34,14 +34,13 @@ mod columns;
 mod normal;
 mod pieces;
 mod polynomial;
-mod real;
 mod samples;
 
 pub use columns::{Column, Columns, Results, Wanted};
 pub use pieces::PIECE_LEVELS;
-pub use real::Real;
 pub use samples::Samples;
 
+use super::real::{Real, vectorized};
 use super::{Jet2, LimitSurface};
 use crate::memory::{self, TooMuch};
 use batch::{Batch, Ordered};
@@ -49,7 +48,6 @@ use glam::DVec3;
 use pieces::Plan;
 use polynomial::{Piece, single};
 use pulp::{Simd, WithSimd};
-use real::vectorized;
 use samples::Place;
 use std::ops::Range;
 use std::sync::Arc;

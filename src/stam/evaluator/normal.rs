@@ -1,7 +1,7 @@
 //! Unit normals from derivatives, many at a time.
 
 use super::polynomial::Piece;
-use super::real::Real;
+use crate::stam::real::Real;
 use pulp::Simd;
 
 /// Unit normals of samples on one piece.

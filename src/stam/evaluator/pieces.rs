@@ -4,11 +4,11 @@
 //! half as large each time; those of the first [`PIECE_LEVELS`] levels are stored. Both are linear in the control points, and patches of a
 //! class share the matrix, so that a patch costs one small dense product.
 
-use super::polynomial::{Piece, Product};
-use super::real::{Real, vectorized};
+use super::polynomial::Piece;
 use crate::kept::Kept;
 use crate::patch::{Patch, RingClass};
-use crate::stam::{ClassTable, LimitSurface, WINDOWS};
+use crate::stam::product::Products;
+use crate::stam::{ClassTable, LimitSurface, Real, WINDOWS};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -83,10 +83,10 @@ impl Plan {
             jobs.push((start..end, own));
             rest = others;
         }
-        jobs.into_par_iter().for_each_init(Scratch::default, |scratch, (range, mut own)| {
+        jobs.into_par_iter().for_each_init(Products::default, |products, (range, mut own)| {
             for patch in range {
                 let (pieces, others) = own.split_at_mut((self.first[patch + 1] - self.first[patch]) as usize);
-                self.fill_patch(surface, patch, scratch, pieces);
+                self.fill_patch(surface, patch, products, pieces);
                 own = others;
             }
         });
@@ -96,7 +96,7 @@ impl Plan {
         &self,
         surface: &LimitSurface,
         patch: usize,
-        scratch: &mut Scratch,
+        products: &mut Products,
         pieces: &mut [Piece<T>],
     ) {
         if pieces.is_empty() {
@@ -105,48 +105,27 @@ impl Plan {
         let of = &surface.patches()[patch];
         let Some(class) = surface.class(patch) else {
             let net = surface.regular_net(patch);
-            scratch.take(net.iter().map(|point| *point - net[5]));
-            scratch.multiply(&self.regular, 16);
-            return Frame::new(of, 0).place(scratch.coefficients(0), net[5], &mut pieces[0]);
+            products.take(net.iter().map(|point| *point - net[5]));
+            let sums = products.multiply(&self.regular, 16, 16);
+            return Frame::new(of, 0).place(coefficients(sums, 0), net[5], &mut pieces[0]);
         };
         let (points, limit) = surface.irregular_net(patch, &surface.tables()[class]);
-        scratch.take(points.into_iter());
+        products.take(points.into_iter());
         let matrix = self.classes[class].as_ref().expect("patches without a matrix have no pieces");
-        scratch.multiply(matrix, 16 * pieces.len());
+        let rows = 16 * pieces.len();
+        let sums = products.multiply(matrix, rows, rows);
         for (level, own) in pieces.chunks_exact_mut(3).enumerate() {
             let frame = Frame::new(of, level + 1);
             for (window, piece) in own.iter_mut().enumerate() {
-                frame.place(scratch.coefficients(3 * level + window), limit, piece);
+                frame.place(coefficients(sums, 3 * level + window), limit, piece);
             }
         }
     }
 }
 
-/// Room for one patch.
-#[derive(Default)]
-struct Scratch {
-    points: [Vec<f64>; 3],
-    out: [Vec<f64>; 3],
-}
-
-impl Scratch {
-    fn take(&mut self, points: impl Iterator<Item = DVec3>) {
-        self.points.iter_mut().for_each(Vec::clear);
-        for point in points {
-            self.points.iter_mut().zip(point.to_array()).for_each(|(to, x)| to.push(x));
-        }
-    }
-
-    /// Those of a piece.
-    fn coefficients(&self, piece: usize) -> [&[f64; 16]; 3] {
-        self.out.each_ref().map(|out| out[16 * piece..].first_chunk().expect("16 rows a piece"))
-    }
-
-    fn multiply(&mut self, matrix: &[f64], rows: usize) {
-        self.out.iter_mut().for_each(|out| out.resize(rows, 0.0));
-        let [x, y, z] = &mut self.out;
-        vectorized(Product { matrix, points: self.points.each_ref().map(|p| &p[..]), out: [x, y, z] });
-    }
+/// Those of a piece.
+fn coefficients(sums: [&[f64]; 3], piece: usize) -> [&[f64; 16]; 3] {
+    sums.map(|sums| sums[16 * piece..].first_chunk().expect("16 rows a piece"))
 }
 
 /// How coefficients by a window's own parameters become those by the parameters of the ptex face: the window's u is the face's u, v,

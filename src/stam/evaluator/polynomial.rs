@@ -1,7 +1,7 @@
 //! Bicubic polynomials of points, many samples at a time.
 
-use super::real::{Lanes, Real};
-use pulp::{Simd, WithSimd};
+use crate::stam::real::Real;
+use pulp::Simd;
 
 /// Coefficients of x, y and z: that of u^p v^q at `12*p + 3*q`, u and v counted from the middle of the piece in parameters of the
 /// ptex face.
@@ -154,70 +154,4 @@ pub fn single<S: Simd, T: Real>(_: S, piece: &Piece<T>, u: T, v: T) -> [[T; 3]; 
         c += 1;
     }
     out
-}
-
-/// A dense matrix times points: `out[c][r] = sum of matrix[k * rows + r] * points[c][k]` over k.
-pub struct Product<'a> {
-    /// Column by column, `out[c].len()` numbers each: a multiple of 16.
-    pub matrix: &'a [f64],
-    pub points: [&'a [f64]; 3],
-    pub out: [&'a mut [f64]; 3],
-}
-
-impl WithSimd for Product<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(mut self, simd: S) {
-        let lanes = f64::count::<S>();
-        let rows = self.out[0].len();
-        let mut at = 0;
-        while at + 4 * lanes <= rows {
-            self.block::<S, 4>(simd, at);
-            at += 4 * lanes;
-        }
-        while at < rows {
-            self.block::<S, 2>(simd, at);
-            at += 2 * lanes;
-        }
-    }
-}
-
-impl Product<'_> {
-    /// `V` vectors of rows from `at` on, whose sums stay in registers.
-    #[inline(always)]
-    fn block<S: Simd, const V: usize>(&mut self, simd: S, at: usize) {
-        let lanes = f64::count::<S>();
-        let rows = self.out[0].len();
-        let zero = <f64 as Lanes>::splat(simd, 0.0);
-        let mut sums = [[zero; V]; 3];
-        let [x, y, z] = self.points;
-        let mut k = 0;
-        while k < x.len() {
-            let column = &self.matrix[k * rows + at..k * rows + at + V * lanes];
-            let point = [
-                <f64 as Lanes>::splat(simd, x[k]),
-                <f64 as Lanes>::splat(simd, y[k]),
-                <f64 as Lanes>::splat(simd, z[k]),
-            ];
-            let mut i = 0;
-            while i < V {
-                let weight = <f64 as Lanes>::load(simd, &column[i * lanes..(i + 1) * lanes]);
-                sums[0][i] = <f64 as Lanes>::mul_add(simd, weight, point[0], sums[0][i]);
-                sums[1][i] = <f64 as Lanes>::mul_add(simd, weight, point[1], sums[1][i]);
-                sums[2][i] = <f64 as Lanes>::mul_add(simd, weight, point[2], sums[2][i]);
-                i += 1;
-            }
-            k += 1;
-        }
-        let mut c = 0;
-        while c < 3 {
-            let mut i = 0;
-            while i < V {
-                <f64 as Lanes>::store(simd, &mut self.out[c][at + i * lanes..at + (i + 1) * lanes], sums[c][i]);
-                i += 1;
-            }
-            c += 1;
-        }
-    }
 }

@@ -1,7 +1,7 @@
 //! Samples, grouped by the polynomial that they lie on.
 
 use super::pieces::{self, PIECE_LEVELS, Plan};
-use super::real::Real;
+use crate::stam::real::Real;
 use crate::stam::{LimitSurface, Window};
 use rayon::prelude::*;
 use std::ops::Range;
