@@ -118,5 +118,6 @@ fn structs_have_the_same_layout_on_both_sides() {
         }
     );
     same_layout!("Lens", LensRecord { size, perspective, scale });
+    same_layout!("Own", OwnRecord { origin, size });
     same_layout!("Resolve", ResolveRecord { top, samples, bottom, row, rows });
 }

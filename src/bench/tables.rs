@@ -4,6 +4,7 @@ use super::{BenchError, Contest, Unit, one_thread};
 use crate::gpu::Gpu;
 use crate::mesh::SubdivMesh;
 use crate::osd::{BfrPeer, EndCap, Far, Isolation, MAX_ISOLATION, OsdPeer};
+use crate::patch::refiner;
 use crate::stam::{ClassTable, Evaluator, LimitSurface, MovingSurface};
 use std::hint::black_box;
 
@@ -25,7 +26,7 @@ pub(super) fn tables<'a>(mesh: &'a SubdivMesh, gpu: Option<&'a Gpu>) -> Result<V
         let note = format!(
             "{} faces, mesh in memory to {what}, one thread; the matrices of {} classes are those of all meshes of the process, and made before: \
              {cold:.1} us/face more in the first; Osd: refinement, patch table, points and patch map at isolation 10 in f64; Bfr: surfaces of all \
-             faces at levels 10 and 10 in f64",
+             faces at levels 10 and 10 in f64; floor: OpenSubdiv's part of ours, its refinement as deep as we need it",
             mesh.face_count(),
             classes.len(),
         );
@@ -33,6 +34,9 @@ pub(super) fn tables<'a>(mesh: &'a SubdivMesh, gpu: Option<&'a Gpu>) -> Result<V
         Contest::new(name, Unit::microseconds_a_face(mesh.face_count()), note, move || pool.install(&ours))
             .against("osd", move || _ = black_box(Far::with(mesh, isolation, EndCap::Gregory).expect("it had a table")))
             .against("bfr", || _ = black_box(BfrPeer::<f64>::new(mesh, DEEPEST).expect("it had surfaces")))
+            .floor(|| {
+                _ = black_box(refiner(mesh).and_then(|refiner| refiner.interpolate(&mesh.points)).expect("it refined"))
+            })
     };
     let on_adapter = gpu.map(|gpu| {
         let ours = move || _ = black_box(gpu.upload(&surface()).expect("it was uploaded"));

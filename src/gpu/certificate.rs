@@ -3,7 +3,6 @@
 use super::shader::{STATE_CHART, STATE_DOUBTFUL, STATE_NONE, STATE_SOLVED};
 use crate::field::Camera;
 use glam::DVec3;
-use rayon::prelude::*;
 
 /// How a sample came to its point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -79,14 +78,6 @@ pub struct Summary {
 }
 
 impl Summary {
-    /// Of the bits that shaders/charts.wgsl writes.
-    pub(super) fn of_bits(bits: &[u32]) -> Summary {
-        let sum = |bits: &[u32]| {
-            bits.iter().map(|&bits| Summary::one(Certificate::from_bits(bits))).fold(Summary::default(), Summary::and)
-        };
-        bits.par_chunks(1 << 16).map(sum).reduce(Summary::default, Summary::and)
-    }
-
     /// Of certificates.
     pub fn of(certificates: &[Certificate]) -> Summary {
         certificates.iter().copied().map(Summary::one).fold(Summary::default(), Summary::and)

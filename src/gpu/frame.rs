@@ -8,7 +8,6 @@ use super::view::{Tile, View};
 use super::{GpuError, Pipeline, Stage, Tables, paper};
 use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
-use std::borrow::Cow;
 use std::time::{Duration, Instant};
 
 /// Patch index of a pixel that sees no surface.
@@ -159,9 +158,9 @@ fn draw<T: bytemuck::Pod>(
         timings.time("shade", || passes::shade::run(device, passes, scene, &visible, &picture, stage))?;
         timings.time("resolve", || passes::resolve::run(device, passes, scene, &picture, &tile, colour))?;
         if let (Some(summary), Some(texture)) = (&mut summary, &visible.certificate) {
-            let bits: Vec<u32> = timings.time("certificates", || device.read_texture(texture))?;
-            let bits = crop(&bits, [tile.origin, tile.size], [own.origin, own.size]);
-            *summary = summary.and(timings.time("certificates", || Summary::of_bits(&bits)));
+            let of_tile =
+                timings.time("certificates", || passes::summary::run(device, passes, texture, &tile, &own))?;
+            *summary = summary.and(of_tile);
         }
         timings.time("read back", || read_own(device, &picture.colour, [&tile, &own], &mut whole, size))?;
     }
@@ -296,16 +295,6 @@ fn read_own<T: bytemuck::Pod>(
             bytemuck::cast_slice_mut(&mut whole[at..at + width]).copy_from_slice(part);
         }
     })
-}
-
-/// The part of a rectangle, given by origin and size, that lies in a smaller one.
-fn crop<'a, T: Copy>(values: &'a [T], [origin, size]: [[u32; 2]; 2], [inner, part]: [[u32; 2]; 2]) -> Cow<'a, [T]> {
-    if size == part {
-        return Cow::Borrowed(values);
-    }
-    let [left, top] = [0, 1].map(|k| (inner[k] - origin[k]) as usize);
-    let rows = values.chunks_exact(size[0] as usize).skip(top).take(part[1] as usize);
-    Cow::Owned(rows.flat_map(|row| &row[left..left + part[0] as usize]).copied().collect())
 }
 
 /// Copies a rectangle into a picture.

@@ -82,6 +82,16 @@ pub struct LensRecord {
     pub scale: f32,
 }
 
+/// `Own`, shaders/summary.wgsl: part of a tile.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct OwnRecord {
+    /// First sample.
+    pub origin: [u32; 2],
+    /// Samples each way.
+    pub size: [u32; 2],
+}
+
 /// `Resolve`, shaders/resolve.wgsl.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]

@@ -25,6 +25,8 @@ pub const PATTERN_PICTURE: u32 = 3;
 pub const PATTERN_BAND: u32 = 4;
 /// False colours.
 pub const PATTERN_HEAT: u32 = 5;
+/// Samples of a column that an invocation of shaders/summary.wgsl sums up.
+pub const SUMMED: u32 = 64;
 /// Invocations in a workgroup of the compute passes.
 pub const WORKGROUP: u32 = 64;
 /// Highest level n with 2^-n a normal f32: the number of scales of a class.
@@ -263,9 +265,12 @@ pub const SPECKS: Module = Module { name: "specks", files: &[CERTIFICATE, includ
 pub const CHARTS: Module =
     Module { name: "charts", files: &[CHART, CERTIFICATE, include_str!("../../shaders/charts.wgsl")] };
 
+/// What the certificates of a tile say together.
+pub const SUMMARY: Module = Module { name: "summary", files: &[include_str!("../../shaders/summary.wgsl")] };
+
 /// All modules.
-pub const MODULES: [Module; 10] =
-    [SPECKS, CHARTS, VISIBILITY, RECTANGLE, LIMIT, POLYGON, SHADE, POINTS, RESOLVE, EVALUATE];
+pub const MODULES: [Module; 11] =
+    [SUMMARY, SPECKS, CHARTS, VISIBILITY, RECTANGLE, LIMIT, POLYGON, SHADE, POINTS, RESOLVE, EVALUATE];
 
 /// WGSL declarations of the constants above.
 fn constants(variant: &Variant) -> String {
@@ -286,6 +291,8 @@ fn constants(variant: &Variant) -> String {
         ("CENTRE_LEVEL", LEVELS as u32),
         ("NO_PATCH", NO_PATCH),
         ("CHART_TEXELS", CHART_TEXELS),
+        ("SUMMED", SUMMED),
+        ("STATE_NONE", STATE_NONE),
         ("STATE_SOLVED", STATE_SOLVED),
         ("STATE_CHART", STATE_CHART),
         ("STATE_DOUBTFUL", STATE_DOUBTFUL),

@@ -20,6 +20,7 @@ mod tree;
 mod triangle;
 
 pub use adjacency::{Adjacency, Neighbour};
+pub(crate) use refine::refiner;
 pub use refine::{Refinement, Watch};
 pub use tree::PHANTOM;
 pub(crate) use tree::slot;

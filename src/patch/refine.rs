@@ -22,6 +22,14 @@ pub(super) fn isolation(mesh: &SubdivMesh) -> u32 {
     (finite.ceil() as u32).clamp(RINGS_STAND_ALONE, MAX_ISOLATION)
 }
 
+/// OpenSubdiv's refinement as deep as the patches of a mesh of quads and n-gons need it, in one piece.
+///
+/// # Errors
+/// The mesh is not valid, or OpenSubdiv refuses it.
+pub(crate) fn refiner(mesh: &SubdivMesh) -> Result<Refiner, osd::Error> {
+    Refiner::adaptive(mesh, isolation(mesh), RINGS_STAND_ALONE, true)
+}
+
 /// Who is told how far refinement is: pieces that are done, and all pieces. It is called from several threads.
 pub type Watch<'a> = &'a (dyn Fn(usize, usize) + Sync);
 

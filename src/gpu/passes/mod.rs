@@ -8,6 +8,7 @@ pub mod points;
 pub mod rectangle;
 pub mod resolve;
 pub mod shade;
+pub mod summary;
 pub mod visibility;
 
 use super::device::Device;
@@ -44,6 +45,7 @@ pub struct Passes {
     shade: [OnceLock<wgpu::RenderPipeline>; 2],
     resolve: OnceLock<wgpu::RenderPipeline>,
     resolve_linear: OnceLock<wgpu::RenderPipeline>,
+    summary: OnceLock<wgpu::ComputePipeline>,
     evaluate: OnceLock<wgpu::ComputePipeline>,
     shade_compute: [OnceLock<wgpu::ComputePipeline>; 2],
 }
@@ -66,7 +68,10 @@ impl Passes {
         let pipeline = view.pipeline;
         rayon::join(
             || match pipeline {
-                Pipeline::Exact => charts::prepare(self, device),
+                Pipeline::Exact => {
+                    charts::prepare(self, device);
+                    summary::pipeline(self, device);
+                }
                 _ => drop(visibility::pipeline(self, device, pipeline)),
             },
             || {
