@@ -214,6 +214,29 @@ fn stages_draw_the_same_picture() {
     }
 }
 
+/// Targets are kept from one picture to the next, and nothing on them shows in it.
+#[test]
+fn pictures_show_nothing_of_those_before() {
+    let (surface, tables) = upload(&mesh("pole_5.obj"));
+    let close = |direction: DVec3| {
+        let mut view = view(&surface, direction);
+        view.camera.eye = view.camera.target + 0.4 * (view.camera.eye - view.camera.target);
+        view
+    };
+    let fresh = Gpu::new().expect("an adapter");
+    let of_fresh = fresh.upload(&surface).expect("it fits");
+    for pipeline in [Pipeline::Exact, Pipeline::Limit, Pipeline::Polygon, Pipeline::Points] {
+        for stage in [Stage::Fragment, Stage::Compute] {
+            let kind = |view: View| View { pipeline, stage, ..view };
+            let small = kind(View { samples: 2, ..view(&surface, dvec3(1.0, -1.0, 0.5)) });
+            let alone = fresh.render(&of_fresh, &small).expect("the adapter works");
+            let full = render(&tables, &kind(View { samples: 2, ..close(dvec3(1.0, 2.0, 1.5)) }));
+            assert_ne!(full.rgba8, alone.rgba8);
+            assert!(render(&tables, &small).rgba8 == alone.rgba8, "{pipeline:?}, {stage:?}");
+        }
+    }
+}
+
 /// What the exact pipeline says of its pixels: every one has a certificate, and the sum is that of the pixels.
 #[test]
 fn every_pixel_has_a_certificate() {
