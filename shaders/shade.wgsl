@@ -7,7 +7,7 @@ struct Shade {
     // Pattern shape: width or radius, in periods.
     width: f32,
     tube: vec3f,
-    pattern: u32,
+    padding0: u32,
     // Linear RGB of the surroundings that the paint reflects faintly, above and below.
     top: vec3f,
     // Samples in a pixel's width.
@@ -30,9 +30,9 @@ struct Shade {
 @group(0) @binding(3) var<uniform> shade_in: Shade;
 @group(0) @binding(4) var<uniform> light: Light;
 
-// Whether pipelines draw false colours: a branch on the pattern would cost all pictures on software adapters, which compute both
-// sides.
-override FALSE_COLOURS: bool = false;
+// One of the PATTERN_ constants. No uniform: software adapters compute both sides of a branch, or compile the shader again for each
+// picture where a uniform says which.
+override PATTERN: u32 = PATTERN_STRIPES;
 
 // Field value at a pixel; z above 0 where it is defined.
 fn field_at(pixel: vec2i) -> vec3f {
@@ -65,7 +65,7 @@ fn radiance(field: vec2f, jx: vec2f, jy: vec2f) -> vec3f {
     let inside = slab(field.x, light.half_x, w.x * light.spacing) * slab(field.y, light.half_y, w.y * light.spacing);
     let n = shade_in.samples;
     var on = vec3f(0.0);
-    switch shade_in.pattern {
+    switch PATTERN {
         case PATTERN_STRIPES: { on = vec3f(stripe(s.x, shade_in.width, w.x, n)); }
         case PATTERN_LATTICE: {
             on = vec3f(1.0 - (1.0 - stripe(s.x, shade_in.width, w.x, n)) * (1.0 - stripe(s.y, shade_in.width, w.y, n)));
@@ -92,7 +92,7 @@ fn shaded(pixel: vec2i, s: vec4u) -> vec4f {
     let fresnel = 0.04 + 0.5 * pow(1.0 - min(facing, 1.0), 4.0);
     let body = mix(shade_in.paint * (0.25 + 1.25 * wrap * wrap), around, fresnel * wrap);
     let f = bitcast<vec2f>(s.xy);
-    if FALSE_COLOURS {
+    if PATTERN == PATTERN_HEAT {
         return vec4f(false_colour(f.x, shade_in.range, angles.y > 0.0) * (0.35 + 0.65 * wrap), 1.0);
     }
     let jx = change(f, pixel, vec2i(1, 0));

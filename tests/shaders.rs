@@ -104,7 +104,7 @@ fn structs_have_the_same_layout_on_both_sides() {
             paint,
             width,
             tube,
-            pattern,
+            padding0,
             top,
             samples,
             bottom,
@@ -119,5 +119,5 @@ fn structs_have_the_same_layout_on_both_sides() {
     );
     same_layout!("Lens", LensRecord { size, perspective, scale });
     same_layout!("Own", OwnRecord { origin, size });
-    same_layout!("Resolve", ResolveRecord { top, samples, bottom, row, rows });
+    same_layout!("Resolve", ResolveRecord { top, padding0, bottom, row, rows });
 }

@@ -98,8 +98,8 @@ pub struct OwnRecord {
 pub struct ResolveRecord {
     /// Linear RGB of the background at the top of the picture.
     pub top: [f32; 3],
-    /// Samples a pixel each way.
-    pub samples: i32,
+    /// Zero.
+    pub padding0: u32,
     /// Linear RGB of the background at the bottom.
     pub bottom: [f32; 3],
     /// First row of the tile in the picture, in pixels.
@@ -212,8 +212,8 @@ pub struct ShadeRecord {
     pub width: f32,
     /// Linear RGB of the lights.
     pub tube: [f32; 3],
-    /// One of the `PATTERN_` constants of [`shader`](super::shader).
-    pub pattern: u32,
+    /// Zero.
+    pub padding0: u32,
     /// Linear RGB of the surroundings above.
     pub top: [f32; 3],
     /// Samples in a pixel's width.

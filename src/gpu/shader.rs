@@ -25,6 +25,8 @@ pub const PATTERN_PICTURE: u32 = 3;
 pub const PATTERN_BAND: u32 = 4;
 /// False colours.
 pub const PATTERN_HEAT: u32 = 5;
+/// Number of them.
+pub const PATTERNS: usize = 6;
 /// Samples of a column that an invocation of shaders/summary.wgsl sums up.
 pub const SUMMED: u32 = 64;
 /// Invocations in a workgroup of the compute passes.
@@ -282,6 +284,7 @@ fn constants(variant: &Variant) -> String {
         ("PATTERN_CIRCLES", PATTERN_CIRCLES),
         ("PATTERN_PICTURE", PATTERN_PICTURE),
         ("PATTERN_BAND", PATTERN_BAND),
+        ("PATTERN_HEAT", PATTERN_HEAT),
         ("WORKGROUP", WORKGROUP),
         ("TILE_SIDE", TILE_SIDE),
         ("TABLE_WIDTH", TABLE_WIDTH),

@@ -269,13 +269,11 @@ impl View {
 
     /// Colours and pattern.
     pub(super) fn shade_record(&self, tables: &Tables) -> ShadeRecord {
-        let (pattern, width) = match &self.pattern {
-            Pattern::Stripes { width } => (PATTERN_STRIPES, *width),
-            Pattern::Lattice { width } => (PATTERN_LATTICE, *width),
-            Pattern::Circles { radius } => (PATTERN_CIRCLES, *radius),
-            Pattern::Band { radius } => (PATTERN_BAND, 2.0 * radius),
-            Pattern::Heat { .. } => (PATTERN_HEAT, 0.0),
-            Pattern::Picture(_) => (PATTERN_PICTURE, 0.0),
+        let width = match &self.pattern {
+            Pattern::Stripes { width } | Pattern::Lattice { width } => *width,
+            Pattern::Circles { radius } => *radius,
+            Pattern::Band { radius } => 2.0 * radius,
+            Pattern::Heat { .. } | Pattern::Picture(_) => 0.0,
         };
         let scale = self.field.method.scale(tables.unit());
         let range = match self.pattern {
@@ -290,7 +288,7 @@ impl View {
             paint,
             width: width as f32,
             tube,
-            pattern,
+            padding0: 0,
             top,
             samples: (f64::from(self.samples) * self.enlarge) as f32,
             bottom,
@@ -304,11 +302,23 @@ impl View {
         }
     }
 
+    /// Which of the `PATTERN_` constants of [`shader`](super::shader) the pattern is.
+    pub(super) fn pattern_kind(&self) -> u32 {
+        match &self.pattern {
+            Pattern::Stripes { .. } => PATTERN_STRIPES,
+            Pattern::Lattice { .. } => PATTERN_LATTICE,
+            Pattern::Circles { .. } => PATTERN_CIRCLES,
+            Pattern::Band { .. } => PATTERN_BAND,
+            Pattern::Heat { .. } => PATTERN_HEAT,
+            Pattern::Picture(_) => PATTERN_PICTURE,
+        }
+    }
+
     /// Background of a tile.
     pub(super) fn resolve_record(&self, tile: &Tile) -> ResolveRecord {
         ResolveRecord {
             top: self.palette.top,
-            samples: tile.samples as i32,
+            padding0: 0,
             bottom: self.palette.bottom,
             row: tile.pixels()[0][1] as f32,
             rows: self.camera.size[1] as f32,

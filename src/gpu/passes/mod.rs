@@ -14,8 +14,8 @@ pub mod visibility;
 use super::device::Device;
 use super::pool::{Pool, Target};
 use super::proxy::Proxy;
-use super::shader::{Content, Module, TILE_SIDE};
-use super::view::Tile;
+use super::shader::{Content, Module, PATTERNS, TILE_SIDE};
+use super::view::{MAX_SAMPLES, Tile};
 use super::{GpuError, Pipeline, Stage, Tables, View};
 use crate::field::{Field, Grid};
 use fields::{Compiles, FieldPasses};
@@ -41,13 +41,14 @@ pub struct Passes {
     landed_full: OnceLock<wgpu::RenderPipeline>,
     /// By the source of the field.
     fields: Mutex<HashMap<String, Arc<FieldPasses>>>,
-    /// Of lights, and of false colours.
-    shade: [OnceLock<wgpu::RenderPipeline>; 2],
-    resolve: OnceLock<wgpu::RenderPipeline>,
-    resolve_linear: OnceLock<wgpu::RenderPipeline>,
+    /// By pattern.
+    shade: [OnceLock<wgpu::RenderPipeline>; PATTERNS],
+    /// By samples a pixel each way, less one.
+    resolve: [OnceLock<wgpu::RenderPipeline>; MAX_SAMPLES as usize],
+    resolve_linear: [OnceLock<wgpu::RenderPipeline>; MAX_SAMPLES as usize],
     summary: OnceLock<wgpu::ComputePipeline>,
     evaluate: OnceLock<wgpu::ComputePipeline>,
-    shade_compute: [OnceLock<wgpu::ComputePipeline>; 2],
+    shade_compute: [OnceLock<wgpu::ComputePipeline>; PATTERNS],
 }
 
 impl Passes {
@@ -77,7 +78,7 @@ impl Passes {
             || {
                 limit::pipeline(&self.field(&view.field), device, pipeline);
                 shade::pipeline(self, device, view);
-                resolve::pipeline(self, device, colour);
+                resolve::pipeline(self, device, view.samples, colour);
             },
         );
     }

@@ -81,14 +81,14 @@ fn mip_levels(picture: &Picture) -> Vec<Picture> {
     levels
 }
 
-/// Whether a view's pattern is false colours, and what its pipelines are told.
-fn false_colours(view: &View) -> (usize, [(&'static str, f64); 1]) {
-    let is_heat = usize::from(matches!(view.pattern, Pattern::Heat { .. }));
-    (is_heat, [("FALSE_COLOURS", is_heat as f64)])
+/// A view's pattern, and what its pipelines are told.
+fn pattern(view: &View) -> (usize, [(&'static str, f64); 1]) {
+    let kind = view.pattern_kind();
+    (kind as usize, [("PATTERN", f64::from(kind))])
 }
 
 pub fn pipeline<'a>(passes: &'a Passes, device: &Device, view: &View) -> &'a wgpu::RenderPipeline {
-    let (which, constants) = false_colours(view);
+    let (which, constants) = pattern(view);
     let drawing = Drawing {
         module: &SHADE,
         entries: ["fullscreen", "shade"],
@@ -102,7 +102,7 @@ pub fn pipeline<'a>(passes: &'a Passes, device: &Device, view: &View) -> &'a wgp
 }
 
 pub fn compute_pipeline<'a>(passes: &'a Passes, device: &Device, view: &View) -> &'a wgpu::ComputePipeline {
-    let (which, constants) = false_colours(view);
+    let (which, constants) = pattern(view);
     passes.shade_compute[which].get_or_init(|| compute(passes, device, &SHADE, "shade_compute", &constants))
 }
 
