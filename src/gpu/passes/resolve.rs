@@ -34,6 +34,8 @@ pub fn run(
     let samples = whole(&picture.samples);
     let record = device.buffer("the background", &[scene.view.resolve_record(tile)], wgpu::BufferUsages::UNIFORM)?;
     let resources = [(0, wgpu::BindingResource::TextureView(&samples)), (1, record.as_entire_binding())];
-    let group = bind(device, pipeline.get_bind_group_layout(0), &resources);
+    // Linear colour has no background.
+    let bound = if colour == Colour::Linear { 1 } else { 2 };
+    let group = bind(device, pipeline.get_bind_group_layout(0), &resources[..bound]);
     draw_fullscreen(device, pipeline, &[group], &[&picture.colour], None)
 }
