@@ -7,7 +7,7 @@ use super::GpuError;
 use super::device::Device;
 use super::shader::TABLE_WIDTH;
 
-/// Bytes that are handed to the adapter at once, so that staging copies do not pile up.
+/// Bytes after which what was handed over goes to the adapter, so that staging copies do not pile up.
 const PIECE: usize = 16 << 20;
 
 /// A table that is written from its first texel to its last; `T` is one texel.
@@ -20,6 +20,8 @@ pub(super) struct TableWriter<'a, T> {
     height: usize,
     /// Next row.
     row: usize,
+    /// Bytes that have not gone to the adapter.
+    unsent: usize,
 }
 
 impl Device {
@@ -85,7 +87,7 @@ impl<'a, T: bytemuck::Pod> TableWriter<'a, T> {
         });
         // Memory that is not there is noticed here, not after everything has been computed.
         device.check()?;
-        Ok(TableWriter { device, texture, pending: Vec::new(), height: most[0] as usize, row: 0 })
+        Ok(TableWriter { device, texture, pending: Vec::new(), height: most[0] as usize, row: 0, unsent: 0 })
     }
 
     /// The next `count` texels, zeroed, to be filled in.
@@ -105,7 +107,7 @@ impl<'a, T: bytemuck::Pod> TableWriter<'a, T> {
         self.pending = pending;
     }
 
-    /// The rest, and the table.
+    /// The rest, and the table: the next submission takes what has not gone to the adapter.
     pub fn finish(mut self) -> Result<wgpu::Texture, GpuError> {
         let pending = std::mem::take(&mut self.pending);
         self.write(&pending);
@@ -130,7 +132,7 @@ impl<'a, T: bytemuck::Pod> TableWriter<'a, T> {
         }
     }
 
-    fn write_piece(&self, texels: &[T], [width, rows]: [usize; 2]) {
+    fn write_piece(&mut self, texels: &[T], [width, rows]: [usize; 2]) {
         let mut target = self.texture.as_image_copy();
         let (layer, y) = (self.row / self.height, self.row % self.height);
         target.origin = wgpu::Origin3d { x: 0, y: y as u32, z: layer as u32 };
@@ -141,6 +143,10 @@ impl<'a, T: bytemuck::Pod> TableWriter<'a, T> {
         };
         let extent = wgpu::Extent3d { width: width as u32, height: rows as u32, depth_or_array_layers: 1 };
         self.device.queue.write_texture(target, bytemuck::cast_slice(texels), layout, extent);
-        self.device.queue.submit([]);
+        self.unsent += size_of_val(texels);
+        if self.unsent >= PIECE {
+            self.device.queue.submit([]);
+            self.unsent = 0;
+        }
     }
 }

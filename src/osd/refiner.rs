@@ -59,14 +59,17 @@ pub struct Level {
     /// For the edge from each corner to the next, the corner from which the face across runs along it, the other way;
     /// [`NO_TWIN`] where there is none: at boundaries, and where edges are not manifold or faces are turned against each other.
     pub twins: Vec<u32>,
+    /// All faces are quads, as in all refined levels of Catmull and Clark's scheme: corners are then numbered four a face.
+    quads: bool,
 }
 
 /// No face lies across.
 pub const NO_TWIN: u32 = u32::MAX;
 
 impl Level {
-    /// Fills `corner_faces` and `twins`.
+    /// Fills `corner_faces`, `twins` and `quads`.
     fn link(&mut self) {
+        self.quads = self.face_offsets.windows(2).all(|ends| ends[1] - ends[0] == 4);
         let corners = self.face_vertices.len();
         self.corner_faces = Vec::with_capacity(corners);
         for (face, ends) in self.face_offsets.windows(2).enumerate() {
@@ -94,15 +97,26 @@ impl Level {
 
     /// The next corner of the same face.
     pub fn next(&self, corner: usize) -> usize {
+        if self.quads {
+            return corner & !3 | (corner + 1) & 3;
+        }
         let face = self.corner_faces[corner] as usize;
         if corner + 1 == self.face_offsets[face + 1] as usize { self.face_offsets[face] as usize } else { corner + 1 }
     }
 
     /// The corner before it in the same face.
     pub fn previous(&self, corner: usize) -> usize {
+        if self.quads {
+            return corner & !3 | corner.wrapping_sub(1) & 3;
+        }
         let face = self.corner_faces[corner] as usize;
         let [start, end] = [self.face_offsets[face], self.face_offsets[face + 1]];
         (if corner == start as usize { end as usize } else { corner }) - 1
+    }
+
+    /// Whether the face of a corner is a quad.
+    pub fn is_quad(&self, corner: usize) -> bool {
+        self.quads || self.corners(self.corner_faces[corner] as usize).len() == 4
     }
 
     /// Number of faces.
@@ -262,6 +276,7 @@ impl Refiner {
             vertex_children: vec![0; vertices],
             corner_faces: Vec::new(),
             twins: Vec::new(),
+            quads: false,
         };
         let mut rules = vec![0u8; vertices];
         let arrays = raw::osd_level_arrays {

@@ -61,44 +61,43 @@ impl Fan {
         self.sharpness.clear();
         self.opposites.clear();
 
-        let mut first = own;
-        let mut before = 0;
-        while let Some(next) = turn(level, first, false, through_sharp) {
-            if next == own {
-                self.closed = true;
-                first = own;
-                before = 0;
-                break;
-            }
-            first = next;
-            before += 1;
+        self.closed = self.walk(level, own, through_sharp);
+        if self.closed {
+            return;
         }
-        self.index = before;
+        let mut first = own;
+        while let Some(next) = turn(level, first, false, through_sharp) {
+            first = next;
+            self.index += 1;
+        }
+        if self.index > 0 {
+            self.spokes.clear();
+            self.sharpness.clear();
+            self.opposites.clear();
+            self.walk(level, first, through_sharp);
+        }
+        self.sharpness[0] = INFINITE_SHARPNESS;
+    }
 
+    /// Collects the faces counter-clockwise from the one of this corner on; whether they go all the way round.
+    fn walk(&mut self, level: &Level, first: usize, through_sharp: bool) -> bool {
         let mut at = first;
         loop {
-            self.push_spoke(level, at);
-            self.opposites.push(level.face_vertices[level.next(level.next(at))] as usize);
-            self.quads &= level.corners(level.corner_faces[at] as usize).len() == 4;
+            let next = level.next(at);
+            self.spokes.push(level.face_vertices[next] as usize);
+            self.sharpness.push(level.edge_sharpness[level.face_edges[at] as usize]);
+            self.opposites.push(level.face_vertices[level.next(next)] as usize);
+            self.quads &= level.is_quad(at);
             match turn(level, at, true, through_sharp) {
-                Some(next) if next == first => break,
+                Some(next) if next == first => return true,
                 Some(next) => at = next,
                 None => {
                     self.spokes.push(level.face_vertices[level.previous(at)] as usize);
                     self.sharpness.push(INFINITE_SHARPNESS);
-                    break;
+                    return false;
                 }
             }
         }
-        if !self.closed {
-            self.sharpness[0] = INFINITE_SHARPNESS;
-        }
-    }
-
-    fn push_spoke(&mut self, level: &Level, at: usize) {
-        self.spokes.push(level.face_vertices[level.next(at)] as usize);
-        let edge = level.face_edges[at] as usize;
-        self.sharpness.push(level.edge_sharpness[edge]);
     }
 
     /// Number of faces.

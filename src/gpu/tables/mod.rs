@@ -196,6 +196,7 @@ fn fill<S: PatchSource + ?Sized>(device: &Device, source: &S, plan: Plan, unit: 
         points,
         scales: device.table("the powers of lambda", &scales, wgpu::TextureFormat::Rg32Float)?,
     };
+    device.queue.submit([]);
     let (source, bounds) = (source.shared(), source.bounds());
     Ok(Tables { textures: Some(textures), origins, cells, source, bounds, room: plan.bytes, plan, unit, part: None })
 }

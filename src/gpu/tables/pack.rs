@@ -11,8 +11,8 @@ use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
 use std::collections::HashMap;
 
-/// Texels that are computed before they are handed to the adapter: 16 MiB.
-const BATCH: usize = 1 << 20;
+/// Texels that are computed before they are handed to the adapter: 1 MiB, which caches keep.
+const BATCH: usize = 1 << 16;
 
 /// First points of the windows' rows in a level's grid of 5x5 points without the first: the rows of
 /// the windows at u >= 1, then those at u < 1.
