@@ -18,7 +18,7 @@
 //! * [`verify`]: all of it compared with OpenSubdiv;
 //! * [`output`]: files, written whole or not at all;
 //! * [`page`]: the report of a verification as one HTML page;
-//! * [`bench`]: side by side with what a user could pick instead;
+//! * [`mod@bench`]: side by side with what a user could pick instead;
 //! * [`cli`]: the command line.
 //!
 //! ```
