@@ -10,24 +10,6 @@
 //! Against batches over B-spline nets, as OpenSubdiv's and Embree's: coefficients of derivatives are differences taken in f64 and then
 //! rounded, not differences of rounded points, so normals in f32 are as good far from the origin as near it. Nothing is
 //! approximated near extraordinary vertices: samples beyond the stored levels (1/256 of an irregular patch) go to the reference.
-//!
-//! # Practice
-//! [`Evaluator::new`] from a surface; [`Evaluator::place`] finds and groups samples once; [`Evaluator::evaluate`] writes into
-//! [`Columns`] as often as control points move ([`Evaluator::update`]). For a few samples here and there: [`Evaluator::at`] and
-//! [`Evaluator::each`]. The widest vectors of the processor are found when the program runs (AVX-512, AVX2, SSE2).
-//!
-//! ```
-//! use catoptric::stam::{Evaluator, LimitSurface, Results, Wanted};
-//! let mesh = catoptric::mesh::sample();
-//! let surface = LimitSurface::new(&mesh)?;
-//! let evaluator = Evaluator::<f32>::new(&surface)?;
-//! let samples = evaluator.place(&[(0, 0.25, 0.5), (3, 0.5, 0.125)]);
-//! let mut results = Results::new(Wanted { first: true, ..Wanted::default() }, samples.len());
-//! evaluator.evaluate(&samples, results.columns());
-//! let place = results.position(0); // of the sample numbered samples.order()[0]
-//! # assert!(place.iter().all(|x| x.is_finite()));
-//! # Ok::<(), Box<dyn std::error::Error>>(())
-//! ```
 
 mod batch;
 mod columns;
@@ -55,7 +37,24 @@ use std::sync::Arc;
 /// Samples that one thread takes at a time.
 const JOB: usize = 4096;
 
-/// Evaluates a limit surface in `f32` or `f64`; see the [module](self). Clones share what does not depend on control points.
+/// Evaluates a limit surface in `f32` or `f64`. Clones share what does not depend on control points.
+///
+/// [`Evaluator::new`] from a surface; [`Evaluator::place`] finds and groups samples once; [`Evaluator::evaluate`] writes into
+/// [`Columns`] as often as control points move ([`Evaluator::update`]). For a few samples here and there: [`Evaluator::at`] and
+/// [`Evaluator::each`]. The widest vectors of the processor are found when the program runs (AVX-512, AVX2, SSE2).
+///
+/// ```
+/// use catoptric::stam::{Evaluator, LimitSurface, Results, Wanted};
+/// let mesh = catoptric::mesh::sample();
+/// let surface = LimitSurface::new(&mesh)?;
+/// let evaluator = Evaluator::<f32>::new(&surface)?;
+/// let samples = evaluator.place(&[(0, 0.25, 0.5), (3, 0.5, 0.125)]);
+/// let mut results = Results::new(Wanted { first: true, ..Wanted::default() }, samples.len());
+/// evaluator.evaluate(&samples, results.columns());
+/// let place = results.position(0); // of the sample numbered samples.order()[0]
+/// # assert!(place.iter().all(|x| x.is_finite()));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Evaluator<T> {
     surface: LimitSurface,
