@@ -1,8 +1,13 @@
-// Embree 3.13: rtcInterpolateN on a subdivision mesh, rtcIntersect16 on triangles.
+// Embree 3 (Debian 12) or 4 (Debian 13): rtcInterpolateN on a subdivision mesh, rtcIntersect16 on triangles. The build script
+// defines CATOPTRIC_EMBREE as the version that it links.
 #include "embree.h"
 #include "guard.hpp"
 
+#if CATOPTRIC_EMBREE == 4
+#include <embree4/rtcore.h>
+#else
 #include <embree3/rtcore.h>
+#endif
 
 #include <pmmintrin.h>
 
@@ -76,10 +81,33 @@ struct FlushToZero {
     ~FlushToZero() { _mm_setcsr(before); }
 };
 
+// Packets of coherent rays, as each version of Embree is told of them.
+struct Query {
+#if CATOPTRIC_EMBREE == 4
+    RTCIntersectArguments arguments;
+    Query() {
+        rtcInitIntersectArguments(&arguments);
+        arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    }
+    void intersect(int const *valid, RTCScene scene, RTCRayHit16 *packet) {
+        rtcIntersect16(valid, scene, packet, &arguments);
+    }
+#else
+    RTCIntersectContext context;
+    Query() {
+        rtcInitIntersectContext(&context);
+        context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    }
+    void intersect(int const *valid, RTCScene scene, RTCRayHit16 *packet) {
+        rtcIntersect16(valid, scene, &context, packet);
+    }
+#endif
+};
+
 constexpr int32_t SIDE = 4; // a packet is SIDE * SIDE pixels
 
 // How many of the rays through the pixels from (x,y) hit.
-int64_t trace_packet(RTCScene scene, RTCIntersectContext &context, emb_camera const &camera, int32_t x, int32_t y,
+int64_t trace_packet(RTCScene scene, Query &query, emb_camera const &camera, int32_t x, int32_t y,
                      float *depths) {
     RTCRayHit16 packet{};
     alignas(64) int valid[SIDE * SIDE];
@@ -100,7 +128,7 @@ int64_t trace_packet(RTCScene scene, RTCIntersectContext &context, emb_camera co
         packet.ray.mask[i] = ~0u;
         packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
     }
-    rtcIntersect16(valid, scene, &context, &packet);
+    query.intersect(valid, scene, &packet);
     int64_t met = 0;
     for (int32_t i = 0; i < SIDE * SIDE; ++i) {
         if (!valid[i]) continue;
@@ -197,15 +225,13 @@ osd_status emb_triangles_trace(const emb_triangles *triangles, const emb_camera 
         std::atomic<int64_t> met{0};
         auto const work = [&] {
             FlushToZero const flush;
-            RTCIntersectContext context;
-            rtcInitIntersectContext(&context);
-            context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+            Query query;
             int64_t own = 0;
             for (int32_t tile; (tile = next++) < columns * rows;) {
                 int32_t const x0 = tile % columns * TILE, y0 = tile / columns * TILE;
                 for (int32_t y = y0; y < std::min(y0 + TILE, camera->height); y += SIDE)
                     for (int32_t x = x0; x < std::min(x0 + TILE, camera->width); x += SIDE)
-                        own += trace_packet(triangles->scene, context, *camera, x, y, depths);
+                        own += trace_packet(triangles->scene, query, *camera, x, y, depths);
             }
             met += own;
         };

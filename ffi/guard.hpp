@@ -17,8 +17,9 @@
 #include <string>
 #include <vector>
 
-static_assert(OPENSUBDIV_VERSION_NUMBER == 30500,
-              "catoptric is written for and checked against OpenSubdiv 3.5.0 (Debian 12: libosd-dev)");
+static_assert(OPENSUBDIV_VERSION_NUMBER >= 30500 && OPENSUBDIV_VERSION_NUMBER < 40000,
+              "catoptric is checked against OpenSubdiv 3.5.0 (Debian 12) and 3.6.0 (Debian 13: libosd-dev); another major "
+              "version has another interface");
 
 namespace catoptric {
 
