@@ -1,5 +1,5 @@
 /*
- * The whole C interface between catoptric and OpenSubdiv 3.5.0. bindgen reads this file alone.
+ * The whole C interface between catoptric and OpenSubdiv (3.5.0 up to below 4.0). bindgen reads this file alone.
  *
  * Conventions
  *  - Every function that can fail returns an osd_status; after OSD_FAILED, osd_message() says why (one line, valid until
@@ -101,10 +101,11 @@ osd_status osd_refiner_level(const osd_refiner *refiner, int32_t level, const os
 osd_status osd_refiner_interpolate(const osd_refiner *refiner, const double *points, double *out);
 /*
  * Limit positions and two tangents by OpenSubdiv's masks. All arrays: 3 * vertices of the last level (uniform
- * refinement).
+ * refinement). `crowded`: the vertices that OpenSubdiv's masks have no room for, because they are not manifold and have more
+ * faces than edges; it would write beyond its arrays, so if there is one it is not asked, and the arrays stay as they are.
  */
 osd_status osd_refiner_limit(const osd_refiner *refiner, const double *points, double *positions, double *tangents_1,
-                             double *tangents_2);
+                             double *tangents_2, int32_t *crowded);
 
 /* ---- reference evaluators ---------------------------------------------------------------------------------------- */
 

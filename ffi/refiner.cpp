@@ -109,6 +109,22 @@ uint8_t rule_of(Sdc::Crease::Rule rule) {
     }
 }
 
+// Vertices that PrimvarRefiner::Limit has no room for: its arrays hold a vertex and twice as many others as the level's valence,
+// at least 33 in all. Neighbours across edges and faces share them, and only a vertex that is not manifold has more faces than
+// edges. It takes no account of that (3.5.0 to 3.6.0): from 11 faces at an edge on, it writes beyond them.
+int32_t count_crowded(Far::TopologyLevel const &level) {
+    int valence = 0;
+    for (int v = 0; v < level.GetNumVertices(); ++v) valence = std::max(valence, level.GetVertexEdges(v).size());
+    // Weights of three masks lie one after the other, those of faces behind those of `valence` edges.
+    int const indices = std::max(33, 1 + 2 * valence), weights = std::max(99, 3 * (1 + 2 * valence));
+    int32_t crowded = 0;
+    for (int v = 0; v < level.GetNumVertices(); ++v) {
+        int const edges = level.GetVertexEdges(v).size(), faces = level.GetVertexFaces(v).size();
+        crowded += edges + faces > indices || 2 * (1 + 2 * valence) + 1 + valence + faces > weights;
+    }
+    return crowded;
+}
+
 } // namespace
 
 extern "C" {
@@ -217,9 +233,11 @@ osd_status osd_refiner_interpolate(const osd_refiner *handle, const double *poin
 }
 
 osd_status osd_refiner_limit(const osd_refiner *handle, const double *points, double *positions, double *tangents_1,
-                             double *tangents_2) {
+                             double *tangents_2, int32_t *crowded) {
     return guard([&] {
         require(handle->refiner->IsUniform(), "limit masks need uniform refinement");
+        *crowded = count_crowded(handle->refiner->GetLevel(handle->refiner->GetMaxLevel()));
+        if (*crowded > 0) return;
         Far::PrimvarRefinerReal<double> const primvar(*handle->refiner);
         Point const *source = reinterpret_cast<Point const *>(points);
         Point *limit = reinterpret_cast<Point *>(positions);

@@ -39,6 +39,9 @@ pub(super) enum Command {
     Info(InfoArgs),
     /// Measure against OpenSubdiv's evaluators, side by side, on this machine
     Bench(BenchArgs),
+    /// Answer for OpenSubdiv in a process of its own, which `verify` starts
+    #[command(name = super::verify::WORKER, hide = true)]
+    ReferenceWorker,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -122,7 +125,8 @@ pub(super) struct VerifyArgs {
     /// Report how long each step took
     #[arg(long)]
     pub timings: bool,
-    /// Plant an error in our evaluation, to test that it is caught: point[:PATCH], crease[:N] or swap
+    /// Plant an error in our evaluation, to test that it is caught: point[:PATCH], crease[:N], swap or
+    /// crash:masks|stencils|far|bfr
     #[arg(long, value_name = "ERROR", hide = true)]
     pub plant: Option<crate::verify::Plant>,
     /// The conformance test

@@ -128,6 +128,7 @@ pub fn run() -> ExitCode {
         Command::Quality(args) => quality::run(&args),
         Command::Info(args) => info::run(&args),
         Command::Bench(args) => bench::run(&args),
+        Command::ReferenceWorker => verify::work(),
     });
     exit_code(result)
 }

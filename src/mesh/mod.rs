@@ -23,6 +23,7 @@ mod validate;
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 
 use crate::memory;
 
@@ -121,7 +122,7 @@ pub fn parse_obj(text: &[u8], name: &str) -> Result<SubdivMesh, MeshError> {
 }
 
 /// What the subdivision rules do at the boundary of the mesh (OpenSubdiv's `VtxBoundaryInterpolation`).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Boundary {
     /// No interpolation: faces that touch the boundary have no limit surface.
     None,
@@ -133,7 +134,7 @@ pub enum Boundary {
 }
 
 /// How finite sharpness decays from level to level (OpenSubdiv's `CreasingMethod`).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Creasing {
     /// Sharpness decreases by one a level.
     #[default]
@@ -143,7 +144,7 @@ pub enum Creasing {
 }
 
 /// An edge with a sharpness: 0 is smooth, 10 and above infinitely sharp.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Crease {
     /// The two vertices of the edge.
     pub vertices: [u32; 2],
@@ -152,7 +153,7 @@ pub struct Crease {
 }
 
 /// A vertex with a sharpness: 0 is smooth, 10 and above infinitely sharp.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Corner {
     /// The vertex.
     pub vertex: u32,
@@ -164,7 +165,7 @@ pub struct Corner {
 ///
 /// Faces are counter-clockwise seen from outside; edges may be shared by more than two faces (non-manifold meshes are
 /// legal). If an edge has several creases or a vertex several corners, the last one counts, as in OpenSubdiv.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct SubdivMesh {
     /// Name for messages and reports (file stem, or `sample`).
     pub name: String,

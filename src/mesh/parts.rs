@@ -7,7 +7,7 @@ use glam::DAffine3;
 use super::SubdivMesh;
 
 /// A mesh of a scene whose meshes were read as one.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Part {
     /// Path of its prim.
     pub name: String,
@@ -20,7 +20,7 @@ pub struct Part {
 }
 
 /// An instance: a part with the topology of an earlier one that repeats none, and its points moved.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Repeat {
     /// Index of the earlier part.
     pub part: u32,

@@ -3,7 +3,7 @@
 use super::SubdivMesh;
 
 /// Whose rules make the limit surface of a control mesh.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, serde::Serialize, serde::Deserialize)]
 pub enum Scheme {
     /// Catmull & Clark 1978: bicubic splines where the mesh is regular.
     #[default]

@@ -1,4 +1,4 @@
-//! OpenSubdiv 3.5.0 through `ffi/osd.h`: topology refinement ([`Refiner`]) and the regression references
+//! OpenSubdiv (3.5.0 up to below 4.0) through `ffi/osd.h`: topology refinement ([`Refiner`]) and the regression references
 //! ([`LimitStencils`], [`Far`], [`Bfr`]), and what benchmarks hold us against ([`BfrPeer`], [`OsdPeer`]). The only `unsafe` of the crate lives here.
 //!
 //! Each C++ object has one owner that releases it once. OpenSubdiv validates almost nothing, so every mesh passes
@@ -13,19 +13,21 @@ mod raw;
 mod reference;
 mod refiner;
 mod stencils;
+mod version;
 
 #[cfg(feature = "peers")]
 pub use embree::{EmbreeCamera, EmbreeSamples, EmbreeSubdivision, EmbreeTriangles};
 pub use patches::{EndCap, FarNet, FarPatch, Isolation};
 pub use peers::{BfrPeer, OsdPeer, PeerSamples};
 pub use reference::{Answer, Bfr, Far, Location, Reference, ReferenceJet};
-pub use refiner::{Level, NO_TWIN, Refiner, Rule};
+pub use refiner::{Level, LimitMasks, NO_TWIN, Refiner, Rule};
 pub use stencils::{LimitStencils, Stencil};
+pub use version::{Version, version};
 
 use crate::mesh::{Boundary, Creasing, MeshError, Scheme, SubdivMesh};
 use std::ffi::CStr;
 
-/// Deepest isolation of OpenSubdiv 3.5.0: beyond it, patches are silently wrong or memory is corrupted.
+/// Deepest isolation of OpenSubdiv (3.5.0 to 3.6.0): beyond it, patches are silently wrong or memory is corrupted.
 pub const MAX_ISOLATION: u32 = 10;
 
 /// Sharpness from which an edge or vertex is infinitely sharp (`Sdc::Crease::SHARPNESS_INFINITE`).
@@ -40,12 +42,6 @@ pub enum Error {
     /// OpenSubdiv reported an error or threw an exception.
     #[error("OpenSubdiv: {0}")]
     OpenSubdiv(String),
-}
-
-/// Version of OpenSubdiv's headers, as built against; no other than 3.5.0 compiles.
-pub fn version() -> String {
-    // SAFETY: osd_version returns a static C string.
-    unsafe { CStr::from_ptr(raw::osd_version()) }.to_string_lossy().into_owned()
 }
 
 /// Turns the status of a call made on this thread into a `Result`.

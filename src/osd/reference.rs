@@ -4,10 +4,11 @@ use super::{Descriptor, EndCap, Error, FarPatch, Isolation, check, int, raw};
 use crate::mesh::SubdivMesh;
 use glam::DVec3;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use std::ptr::NonNull;
 
 /// What answered a reference sample.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Answer {
     /// Nothing: the face is a hole or has no limit surface.
     None,
@@ -15,13 +16,13 @@ pub enum Answer {
     Regular,
     /// An end cap (Far) or an irregular face (Bfr), approximate away from its corners.
     EndCap,
-    /// The reference was not asked: OpenSubdiv 3.5.0 reads out of bounds there. That is Bfr on faces with an interior
+    /// The reference was not asked: OpenSubdiv (3.5.0 to 3.6.0) reads out of bounds there. That is Bfr on faces with an interior
     /// vertex of valence 2.
     NotAsked,
 }
 
 /// A reference's answer, derivatives by the (u,v) of the ptex face.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ReferenceJet {
     /// What answered; the other fields are zero for [`Answer::None`] and [`Answer::NotAsked`].
     pub answer: Answer,

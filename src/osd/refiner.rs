@@ -3,10 +3,11 @@
 use super::{Descriptor, Error, INFINITE_SHARPNESS, MAX_ISOLATION, check, int, raw};
 use crate::mesh::SubdivMesh;
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 use std::ptr::NonNull;
 
 /// A vertex rule (`Sdc::Crease::Rule`).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Rule {
     /// No sharp edge.
     Smooth,
@@ -30,7 +31,7 @@ impl Rule {
 }
 
 /// One level of refined topology, copied out of OpenSubdiv. Indices are local to the level.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Level {
     /// Face f has the corners `face_offsets[f] .. face_offsets[f+1]` of the four arrays below.
     pub face_offsets: Vec<i32>,
@@ -327,13 +328,38 @@ impl Refiner {
     ///
     /// # Panics
     /// `points` is not one point for each vertex of the last level.
-    pub fn limit(&self, points: &[DVec3]) -> Result<[Vec<DVec3>; 3], Error> {
+    pub fn limit(&self, points: &[DVec3]) -> Result<LimitMasks, Error> {
         assert_eq!(Some(&points.len()), self.vertex_counts.last(), "one point a vertex of the last level");
         let mut out = [(); 3].map(|()| vec![DVec3::ZERO; points.len()]);
         let source: &[f64] = bytemuck::cast_slice(points);
         let [positions, first, second] = out.each_mut().map(|x| bytemuck::cast_slice_mut::<DVec3, f64>(x).as_mut_ptr());
-        // SAFETY: all four arrays hold the last level, as the header asks.
-        check(unsafe { raw::osd_refiner_limit(self.handle.as_ptr(), source.as_ptr(), positions, first, second) })?;
-        Ok(out)
+        let mut crowded = 0;
+        // SAFETY: all four arrays hold the last level, as the header asks; the count is a local.
+        check(unsafe {
+            raw::osd_refiner_limit(self.handle.as_ptr(), source.as_ptr(), positions, first, second, &mut crowded)
+        })?;
+        if crowded > 0 {
+            return Ok(LimitMasks::NotAsked { crowded: crowded as usize });
+        }
+        let [positions, first, second] = out;
+        Ok(LimitMasks::Answered { positions, tangents: [first, second] })
     }
+}
+
+/// What OpenSubdiv's limit masks make of the vertices of a level.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum LimitMasks {
+    /// The limit of each vertex, and two tangents.
+    Answered {
+        /// Limit positions.
+        positions: Vec<DVec3>,
+        /// Two tangents of each.
+        tangents: [Vec<DVec3>; 2],
+    },
+    /// OpenSubdiv was not asked, because it would write beyond its arrays: at vertices that are not manifold and have many more
+    /// faces than edges, such as the middle of an edge of 11 faces.
+    NotAsked {
+        /// How many such vertices there are.
+        crowded: usize,
+    },
 }

@@ -5,6 +5,7 @@ use super::{Descriptor, Error, check, raw};
 use crate::mesh::SubdivMesh;
 use glam::DVec3;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use std::ptr::NonNull;
 
 /// Owner of a control mesh that `Far::LimitStencilTable`s in double precision are made for, with the options of
@@ -20,7 +21,7 @@ pub struct LimitStencils {
 }
 
 /// One point of the limit as a sum of control points.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Stencil {
     /// What kind of patch it comes from.
     pub answer: Answer,

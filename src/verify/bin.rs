@@ -2,7 +2,8 @@
 
 use super::difference::{Check, Difference, Normal, Place, Sample, larger};
 use super::histogram::Histogram;
-use super::key::Key;
+use super::key::{Against, Key, TierName};
+use super::references::ReferenceError;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -86,6 +87,18 @@ pub(super) struct Bins {
     pub not_asked: usize,
     /// Patches without a sample that was judged inside: OpenSubdiv has an end cap all over them.
     pub unjudged: usize,
+    /// Vertices of the refined level that limit masks have no room for; they are not asked then.
+    pub crowded: usize,
+    /// References that did not answer, in the order in which they were asked.
+    pub unanswered: Vec<Unanswered>,
+}
+
+/// A tier whose reference did not answer.
+#[derive(Debug, Clone)]
+pub(super) struct Unanswered {
+    pub tier: TierName,
+    pub against: Against,
+    pub why: ReferenceError,
 }
 
 impl Bin {
@@ -151,6 +164,19 @@ impl Bins {
         self.add(key, place, Difference { position, normal: Normal::Unknown, derivative: None });
     }
 
+    /// The answers of a reference; one that does not answer becomes a row, and the other references are asked all the same.
+    pub fn answered<T>(&mut self, tier: TierName, against: Against, answers: Result<T, ReferenceError>) -> Option<T> {
+        let why = match answers {
+            Ok(answers) => return Some(answers),
+            Err(why) => why,
+        };
+        // A tier that asks in portions has one row all the same.
+        if !self.unanswered.iter().any(|known| (known.tier, known.against) == (tier, against)) {
+            self.unanswered.push(Unanswered { tier, against, why });
+        }
+        None
+    }
+
     /// A row without samples, which fails.
     pub fn nothing(&mut self, key: Key) {
         self.bins.entry(key).or_default();
@@ -175,7 +201,6 @@ impl Bins {
 
 #[cfg(test)]
 mod tests {
-    use super::super::key::{Against, TierName};
     use super::*;
 
     const KEY: Key = Key { tier: TierName::Regular, against: Against::Far, kind: None, known_wrong: None };

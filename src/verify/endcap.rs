@@ -3,16 +3,18 @@
 use super::bin::Bins;
 use super::difference::{Check, Difference, Normal, Sample};
 use super::key::{Against, Key, TierName};
+use super::references::References;
 use super::regular::scattered;
-use super::{NORMAL_LIMIT, Subject, VerifyError, rounding};
-use crate::osd::{Answer, Bfr, Reference};
+use super::{NORMAL_LIMIT, Subject, rounding};
+use crate::osd::{Answer, Bfr};
 
 const PER_FACE: usize = 64;
 const BUDGET: usize = 400_000;
 
-pub(super) fn run(subject: &Subject<'_>, bins: &mut Bins) -> Result<(), VerifyError> {
+pub(super) fn run(subject: &Subject<'_>, references: &References<'_>, bins: &mut Bins) {
     let samples = scattered(subject, PER_FACE, BUDGET);
-    let answers = Bfr::new(subject.mesh, Bfr::DEFAULT_LEVELS)?.evaluate(&samples)?;
+    let answers = references.bfr(Bfr::DEFAULT_LEVELS, &samples);
+    let Some(answers) = bins.answered(TierName::EndCap, Against::BfrEndCaps, answers) else { return };
     bins.not_asked += answers.iter().filter(|a| a.answer == Answer::NotAsked).count();
     bins.fill(samples.len(), |bins, i| {
         let (answer, (face, u, v)) = (&answers[i], samples[i]);
@@ -29,5 +31,4 @@ pub(super) fn run(subject: &Subject<'_>, bins: &mut Bins) -> Result<(), VerifyEr
         let key = Key::new(TierName::EndCap, Against::BfrEndCaps, subject.kind(patch));
         bins.add(key, subject.place(sample, Some(patch)), difference);
     });
-    Ok(())
 }

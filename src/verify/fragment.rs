@@ -5,10 +5,11 @@ use super::bin::{Bins, CAP};
 use super::clock::Clock;
 use super::difference::{Check, Difference, Normal, Sample};
 use super::key::{Against, Key, TierName};
+use super::references::References;
 use super::{Subject, VerifyError, rounding};
 use crate::field::{Camera, DEFAULT_FOV, Scout};
 use crate::gpu::{self, Gpu, NO_PATCH, SurfaceImage, Tables, View};
-use crate::osd::{Answer, Far, Location, ReferenceJet};
+use crate::osd::{Answer, Location, ReferenceJet};
 use crate::stam::Jet;
 use crate::statistics::scatter;
 use glam::DVec3;
@@ -32,7 +33,7 @@ const PORTION: usize = 1 << 20;
 
 pub(super) fn run(
     subject: &Subject<'_>,
-    far: &Far,
+    references: &References<'_>,
     gpu: &Gpu,
     size: [u32; 2],
     clock: &mut Clock,
@@ -48,7 +49,7 @@ pub(super) fn run(
     let covered = |image: &SurfaceImage| image.patch.iter().any(|&patch| patch != NO_PATCH);
     let image = look(scout.camera(size, DVec3::Z), clock)?;
     if covered(&image) {
-        return pixels(subject, far, &image, clock, bins);
+        return pixels(subject, references, &image, clock, bins);
     }
     // A surface too thin for the pixels' centres is seen from near; one without area not at all.
     let Some(jet) = largest else { return Ok(()) };
@@ -56,7 +57,7 @@ pub(super) fn run(
     if !covered(&image) {
         bins.nothing(Key::new(TierName::Fragment, Against::F64, None));
     }
-    pixels(subject, far, &image, clock, bins)
+    pixels(subject, references, &image, clock, bins)
 }
 
 /// A camera that looks at a square round a point, as wide as a quarter of its cell is in the direction in which it is thin.
@@ -139,7 +140,7 @@ fn difference(subject: &Subject<'_>, ours: &Jet, reference: &Jet, cell: f64, con
 
 fn pixels(
     subject: &Subject<'_>,
-    far: &Far,
+    references: &References<'_>,
     image: &SurfaceImage,
     clock: &mut Clock,
     bins: &mut Bins,
@@ -167,7 +168,8 @@ fn pixels(
         // Portions bound the memory: a picture may have 64 million pixels.
         for pixels in pixels.chunks(PORTION) {
             let samples: Vec<Location> = pixels.par_iter().map(location).collect();
-            let answers = far.evaluate(&samples)?;
+            let answers = references.far(&samples);
+            let Some(answers) = bins.answered(TierName::Fragment, Against::Far, answers) else { break };
             bins.fill(pixels.len(), |bins, k| {
                 let (i, answer) = (pixels[k], &answers[k]);
                 if answer.answer == Answer::Regular {
@@ -177,6 +179,6 @@ fn pixels(
                 }
             });
         }
-        Ok(())
-    })
+    });
+    Ok(())
 }

@@ -55,6 +55,14 @@ fn suite(mesh: &MeshReport) -> TestSuite {
         let title = format!("{} {} / {}{known}", row.tier, row.kind, row.reference);
         suite.add_test_case(case(name, &title, status));
     }
+    for unanswered in &mesh.reference_unanswered {
+        let title = format!("{} - / {}", unanswered.tier, unanswered.reference);
+        suite.add_test_case(case(name, &title, not_passed(NonSuccessKind::Error, &unanswered.reason)));
+    }
+    if mesh.limit_masks_not_asked > 0 {
+        let status = skipped("not asked: more faces meet at a vertex than OpenSubdiv's limit masks have room for");
+        suite.add_test_case(case(name, "vertex - / limit masks", status));
+    }
     if let Some(results) = &mesh.results {
         let status = match results.missing() {
             Some(missing) => not_passed(NonSuccessKind::Failure, &missing),

@@ -1,5 +1,6 @@
 //! What makes a row of the report.
 
+use super::flaw::Flaw;
 use crate::patch::PatchKind;
 
 /// The tiers, in report order.
@@ -71,7 +72,7 @@ pub(super) struct Key {
     /// `None` where we have no surface.
     pub kind: Option<PatchKind>,
     /// Why the reference is wrong here.
-    pub known_wrong: Option<&'static str>,
+    pub known_wrong: Option<Flaw>,
 }
 
 impl Key {

@@ -12,6 +12,7 @@ mod difference;
 mod dyadic;
 mod endcap;
 mod failures;
+mod flaw;
 mod fragment;
 mod histogram;
 mod junit;
@@ -32,8 +33,9 @@ pub use difference::Sample;
 pub use failures::{FailedPatch, Failures};
 pub use histogram::Histogram;
 pub use only::{Evaluation, Influence, Only, OnlyPatch, only};
-pub use plant::Plant;
-pub use report::{Histograms, KnownWrong, MeshReport, Refused, Report, Tier};
+pub use plant::{Crash, Plant};
+pub use references::{Process, ReferenceError, serve};
+pub use report::{Histograms, KnownWrong, MeshReport, Refused, Report, Tier, Unanswered};
 
 use crate::gpu::{Gpu, GpuError};
 use crate::mesh::SubdivMesh;
@@ -62,7 +64,7 @@ pub enum VerifyError {
         /// Largest side of the bounding box.
         extent: f64,
     },
-    /// A reference evaluator failed.
+    /// OpenSubdiv reports an error where it runs in this process.
     #[error(transparent)]
     Osd(#[from] crate::osd::Error),
     /// A sample that is asked for lies nowhere.
@@ -171,28 +173,37 @@ impl<'a> Subject<'a> {
     }
 }
 
-/// Runs all tiers on a mesh; the fragment tier renders at `size`.
-///
-/// # Errors
-/// The mesh is refused, has no surface or is too small to judge; a reference evaluator fails, or the GPU does.
-pub fn verify(mesh: &SubdivMesh, gpu: &Gpu, size: [u32; 2]) -> Result<MeshReport, VerifyError> {
-    verify_planted(mesh, gpu, size, None)
+/// How a mesh is verified.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Settings {
+    /// Width and height of the view that the fragment tier checks, in pixels.
+    pub size: [u32; 2],
+    /// An error to be planted, which must be caught: a test of the checks.
+    pub plant: Option<Plant>,
+    /// Where OpenSubdiv's evaluators run.
+    pub process: Process,
 }
 
-/// The same with an error planted in our evaluation, which must be caught: a test of the checks.
+impl Default for Settings {
+    fn default() -> Self {
+        Self { size: [512, 512], plant: None, process: Process::Own }
+    }
+}
+
+/// Runs all tiers on a mesh.
+///
+/// A reference evaluator that reports an error, or whose process ends, is a row of the report ([`Unanswered`]), which fails; the others
+/// are asked all the same.
 ///
 /// # Errors
-/// As [`verify`], and if the mesh has not what the error is to be planted in.
-pub fn verify_planted(
-    mesh: &SubdivMesh,
-    gpu: &Gpu,
-    size: [u32; 2],
-    plant: Option<Plant>,
-) -> Result<MeshReport, VerifyError> {
-    let surface = judgeable(mesh, plant)?;
-    let subject = Subject { swapped: plant == Some(Plant::Swap), ..Subject::new(mesh, &surface) };
+/// The mesh is refused, has no surface or is too small to judge, or has not what an error is to be planted in; the GPU fails.
+pub fn verify(mesh: &SubdivMesh, gpu: &Gpu, settings: &Settings) -> Result<MeshReport, VerifyError> {
+    let Settings { size, plant, process } = settings;
+    let surface = judgeable(mesh, *plant)?;
+    let subject = Subject { swapped: *plant == Some(Plant::Swap), ..Subject::new(mesh, &surface) };
+    let references = References::new(mesh, process, plant.and_then(Plant::crash));
     let mut clock = Clock::default();
-    let bins = tiers(&subject, gpu, size, &mut clock)?;
+    let bins = tiers(&subject, &references, gpu, *size, &mut clock)?;
     Ok(MeshReport::new(mesh, &surface, bins, clock.steps))
 }
 
@@ -210,14 +221,19 @@ fn judgeable(mesh: &SubdivMesh, plant: Option<Plant>) -> Result<LimitSurface, Ve
     Ok(surface)
 }
 
-fn tiers(subject: &Subject<'_>, gpu: &Gpu, size: [u32; 2], clock: &mut Clock) -> Result<Bins, VerifyError> {
+fn tiers(
+    subject: &Subject<'_>,
+    references: &References<'_>,
+    gpu: &Gpu,
+    size: [u32; 2],
+    clock: &mut Clock,
+) -> Result<Bins, VerifyError> {
     let mut bins = Bins::default();
-    clock.time("vertex", || vertex::run(subject, &mut bins))?;
-    let references = clock.time("references", || References::new(subject))?;
-    clock.time("dyadic", || dyadic::run(subject, &references, &mut bins))?;
-    clock.time("regular", || regular::run(subject, &references, &mut bins))?;
-    fragment::run(subject, &references.far, gpu, size, clock, &mut bins)?;
-    clock.time("endcap", || endcap::run(subject, &mut bins))?;
+    clock.time("vertex", || vertex::run(subject, references, &mut bins));
+    clock.time("dyadic", || dyadic::run(subject, references, &mut bins));
+    clock.time("regular", || regular::run(subject, references, &mut bins));
+    fragment::run(subject, references, gpu, size, clock, &mut bins)?;
+    clock.time("endcap", || endcap::run(subject, references, &mut bins));
     Ok(bins)
 }
 
@@ -228,16 +244,17 @@ mod tests {
     use glam::DVec3;
     use std::sync::atomic::{AtomicUsize, Ordering};
 
+    /// All tiers, with OpenSubdiv in this process.
+    fn own_tiers(subject: &Subject<'_>, gpu: &Gpu, size: [u32; 2]) -> Bins {
+        let references = References::new(subject.mesh, &Process::Own, None);
+        tiers(subject, &references, gpu, size, &mut Clock::default()).expect("it runs")
+    }
+
     /// The tiers that fail when our jets are changed.
     fn failing(mesh: &SubdivMesh, gpu: &Gpu, ours: &(dyn Fn(Jet) -> Jet + Sync)) -> Vec<&'static str> {
         let surface = LimitSurface::new(mesh).expect("the mesh is valid");
         let subject = Subject { ours, ..Subject::new(mesh, &surface) };
-        let report = MeshReport::new(
-            mesh,
-            &surface,
-            tiers(&subject, gpu, [64, 64], &mut Clock::default()).expect("it runs"),
-            Vec::new(),
-        );
+        let report = MeshReport::new(mesh, &surface, own_tiers(&subject, gpu, [64, 64]), Vec::new());
         let mut tiers: Vec<_> = report.tiers.iter().filter(|row| !row.pass).map(|row| row.tier).collect();
         tiers.dedup();
         assert_eq!(report.pass, tiers.is_empty() && report.reference_known_wrong.iter().all(|known| known.row.pass));
@@ -281,12 +298,7 @@ mod tests {
         for (theirs, ours) in [(&whole, &holed), (&holed, &whole)] {
             let surface = LimitSurface::new(ours).expect("the mesh is valid");
             let subject = Subject::new(theirs, &surface);
-            let report = MeshReport::new(
-                theirs,
-                &surface,
-                tiers(&subject, &gpu, [16, 16], &mut Clock::default()).expect("it runs"),
-                Vec::new(),
-            );
+            let report = MeshReport::new(theirs, &surface, own_tiers(&subject, &gpu, [16, 16]), Vec::new());
             let failed = |tier| report.tiers.iter().filter(|row| row.tier == tier).map(|row| row.failed).sum::<usize>();
             assert!(failed("dyadic") >= 25, "{report}");
             assert!(!report.pass);
@@ -303,12 +315,7 @@ mod tests {
         let by = DVec3::splat(mesh.diagonal());
         let ours = |jet: Jet| Jet { position: jet.position + by, ..jet };
         let subject = Subject { ours: &ours, ..Subject::new(&mesh, &surface) };
-        let report = MeshReport::new(
-            &mesh,
-            &surface,
-            tiers(&subject, &gpu, [16, 16], &mut Clock::default()).expect("it runs"),
-            Vec::new(),
-        );
+        let report = MeshReport::new(&mesh, &surface, own_tiers(&subject, &gpu, [16, 16]), Vec::new());
         assert!(!report.reference_known_wrong.is_empty());
         assert!(report.reference_known_wrong.iter().all(|known| !known.row.pass));
     }

@@ -2,16 +2,19 @@
 
 use super::difference::{Sample, angle_deg};
 use super::failures::control_faces;
+use super::flaw::Flaw;
 use super::plant::Plant;
+use super::references::{ReferenceError, References};
 use super::rounding::Rounding;
-use super::{Subject, VerifyError, judgeable, vertex};
+use super::{Settings, Subject, VerifyError, judgeable, vertex};
 use crate::gpu::{self, Gpu};
 use crate::mesh::SubdivMesh;
-use crate::osd::{Answer, Bfr, Far, LimitStencils, MAX_ISOLATION, Reference, ReferenceJet};
+use crate::osd::{Answer, Bfr, MAX_ISOLATION, ReferenceJet, Stencil};
 use crate::patch::Patches;
 use crate::stam::{Jet, LimitSurface};
 use glam::DVec3;
 use serde::Serialize;
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 
 /// All evaluations of one point.
@@ -54,8 +57,8 @@ pub struct OnlyPatch {
 pub struct Evaluation {
     /// Who answers.
     pub evaluator: &'static str,
-    /// `exact`, `end cap` (approximate but at dyadic points), `hole`, `not asked`, or why it is known to be wrong.
-    pub answer: &'static str,
+    /// `exact`, `end cap` (approximate but at dyadic points), `hole`, `not asked`, why it is known to be wrong, or why there is none.
+    pub answer: Cow<'static, str>,
     /// Position.
     pub position: Option<[f64; 3]>,
     /// Derivative by the u of the ptex face.
@@ -85,11 +88,13 @@ pub struct Influence {
     pub ours: Option<[f64; 3]>,
 }
 
-/// Evaluates one point by all means; the shader too if there is a GPU.
+/// Evaluates one point by all means; the shader too if there is a GPU. Of the settings, what is planted and where OpenSubdiv
+/// runs counts.
 ///
 /// # Errors
 /// As [`verify`](super::verify); the face is out of range.
-pub fn only(mesh: &SubdivMesh, gpu: Option<&Gpu>, sample: Sample, plant: Option<Plant>) -> Result<Only, VerifyError> {
+pub fn only(mesh: &SubdivMesh, gpu: Option<&Gpu>, sample: Sample, settings: &Settings) -> Result<Only, VerifyError> {
+    let plant = settings.plant;
     let surface = judgeable(mesh, plant)?;
     let count = surface.ptex_count();
     if sample.face as usize >= count {
@@ -99,9 +104,11 @@ pub fn only(mesh: &SubdivMesh, gpu: Option<&Gpu>, sample: Sample, plant: Option<
     let ours = subject.evaluate(sample);
     let place = surface.locate(sample.face, [sample.u, sample.v]);
     let compare = Compare { unit: subject.rounding.unit, ours: ours.map(|(_, jet)| jet) };
-    let stencils = LimitStencils::new(mesh, MAX_ISOLATION)?;
-    let evaluations = evaluations(&subject, gpu, sample, place, &stencils, &compare)?;
-    let control_points = influences(&subject, sample, plant, &stencils)?;
+    let references = References::new(mesh, &settings.process, plant.and_then(Plant::crash));
+    let evaluations = evaluations(&subject, gpu, sample, place, &references, &compare)?;
+    // Without a stencil its weights are 0; the evaluation says why there is none.
+    let stencil = references.stencil((sample.face, sample.u, sample.v)).ok();
+    let control_points = influences(&subject, sample, plant, stencil.as_ref())?;
     let sum = |points: &[Influence]| -> Option<DVec3> {
         points.iter().map(|p| Some(p.ours?[0] * DVec3::from_array(p.point))).sum()
     };
@@ -129,12 +136,17 @@ struct Compare {
 }
 
 impl Compare {
-    fn evaluation(&self, evaluator: &'static str, answer: &'static str, jet: Option<Jet>) -> Evaluation {
+    fn evaluation(
+        &self,
+        evaluator: &'static str,
+        answer: impl Into<Cow<'static, str>>,
+        jet: Option<Jet>,
+    ) -> Evaluation {
         let pair = jet.zip(self.ours);
         let finite = |d: DVec3| d.is_finite().then(|| d.to_array());
         Evaluation {
             evaluator,
-            answer,
+            answer: answer.into(),
             position: jet.map(|jet| jet.position.to_array()),
             du: jet.and_then(|jet| finite(jet.du)),
             dv: jet.and_then(|jet| finite(jet.dv)),
@@ -147,8 +159,12 @@ impl Compare {
         }
     }
 
-    fn reference(&self, evaluator: &'static str, answer: &ReferenceJet) -> Evaluation {
-        let ReferenceJet { position, du, dv, .. } = *answer;
+    fn reference(&self, evaluator: &'static str, answers: Result<Vec<ReferenceJet>, ReferenceError>) -> Evaluation {
+        let answer = match answers {
+            Ok(answers) => answers[0],
+            Err(error) => return self.evaluation(evaluator, error.to_string(), None),
+        };
+        let ReferenceJet { position, du, dv, .. } = answer;
         let jet = Jet { position, du, dv, normal: du.cross(dv).normalize_or_zero() };
         match answer.answer {
             Answer::Regular => self.evaluation(evaluator, "exact", Some(jet)),
@@ -164,28 +180,28 @@ fn evaluations(
     gpu: Option<&Gpu>,
     at: Sample,
     place: Option<(usize, [f64; 2])>,
-    stencils: &LimitStencils,
+    references: &References<'_>,
     compare: &Compare,
 ) -> Result<Vec<Evaluation>, VerifyError> {
     let (mesh, samples) = (subject.mesh, [(at.face, at.u, at.v)]);
     let answer = if compare.ours.is_some() { "exact" } else { "hole" };
     let mut all = vec![compare.evaluation("ours, f64", answer, compare.ours)];
-    let far = Far::new(mesh, MAX_ISOLATION)?.evaluate(&samples)?;
-    let [end_caps, deep] = [Bfr::DEFAULT_LEVELS, (MAX_ISOLATION, MAX_ISOLATION)]
-        .map(|levels| Bfr::new(mesh, levels).and_then(|mut bfr| bfr.evaluate(&samples)));
-    let references = [
-        ("limit stencils level 10", stencils.evaluate(&samples)?),
-        ("Far level 10", far),
-        ("Bfr 10/10", deep?),
-        ("Bfr 2/6", end_caps?),
-    ];
-    all.extend(references.iter().map(|(name, answers)| compare.reference(name, &answers[0])));
-    if let Some(mask) = vertex::mask(mesh, at)? {
-        let [first, second] = mask.tangents;
-        let none = DVec3::splat(f64::NAN); // its tangents have directions of their own, and no length
-        let normal = first.cross(second).normalize_or_zero();
-        let jet = Jet { position: mask.position, du: none, dv: none, normal };
-        all.push(compare.evaluation("limit mask", mask.known_wrong.unwrap_or("exact"), Some(jet)));
+    all.extend([
+        compare.reference("limit stencils level 10", references.stencils(&samples)),
+        compare.reference("Far level 10", references.far(&samples)),
+        compare.reference("Bfr 10/10", references.bfr((MAX_ISOLATION, MAX_ISOLATION), &samples)),
+        compare.reference("Bfr 2/6", references.bfr(Bfr::DEFAULT_LEVELS, &samples)),
+    ]);
+    match vertex::mask(mesh, references, at) {
+        Ok(Some(mask)) => {
+            let [first, second] = mask.tangents;
+            let none = DVec3::splat(f64::NAN); // its tangents have directions of their own, and no length
+            let normal = first.cross(second).normalize_or_zero();
+            let jet = Jet { position: mask.position, du: none, dv: none, normal };
+            all.push(compare.evaluation("limit mask", mask.known_wrong.map_or("exact", Flaw::reason), Some(jet)));
+        }
+        Ok(None) => {}
+        Err(error) => all.push(compare.evaluation("limit mask", error.to_string(), None)),
     }
     if let Some((gpu, (patch, local))) = gpu.zip(place) {
         let tables = gpu.upload(subject.surface)?;
@@ -201,20 +217,22 @@ fn influences(
     subject: &Subject<'_>,
     at: Sample,
     plant: Option<Plant>,
-    stencils: &LimitStencils,
+    stencil: Option<&Stencil>,
 ) -> Result<Vec<Influence>, VerifyError> {
     let mesh = subject.mesh;
-    let stencil = stencils.stencil((at.face, at.u, at.v))?;
     let vertices: Vec<u32> = around(mesh, control_faces(mesh)[at.face as usize])
         .into_iter()
-        .chain(stencil.vertices.iter().copied())
+        .chain(stencil.into_iter().flat_map(|stencil| stencil.vertices.iter().copied()))
         .collect::<BTreeSet<_>>()
         .into_iter()
         .collect();
     let ours = our_weights(subject, at, plant, &vertices)?;
     let of_stencil = |vertex: u32| {
-        let index = stencil.vertices.iter().position(|&v| v == vertex);
-        index.map_or([0.0; 3], |index| stencil.weights[index])
+        let weights = |stencil: &Stencil| {
+            let index = stencil.vertices.iter().position(|&v| v == vertex);
+            index.map(|index| stencil.weights[index])
+        };
+        stencil.and_then(weights).unwrap_or_default()
     };
     let influence = |(i, &vertex): (usize, &u32)| Influence {
         vertex,

@@ -1,6 +1,7 @@
 //! Errors planted on purpose, to show that the checks catch and locate them.
 
 use super::VerifyError;
+use super::key::Against;
 use super::rounding::Rounding;
 use crate::mesh::SubdivMesh;
 use crate::osd::INFINITE_SHARPNESS;
@@ -23,12 +24,42 @@ pub enum Plant {
     Crease(usize),
     /// u and v are swapped when f64 is evaluated.
     Swap,
+    /// A reference evaluator reads out of bounds, and its process ends.
+    Crash(Crash),
+}
+
+/// A reference evaluator whose process can be made to end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Crash {
+    /// `PrimvarRefiner::Limit`.
+    LimitMasks,
+    /// `Far::LimitStencilTable`.
+    LimitStencils,
+    /// `Far::PatchTable`.
+    Far,
+    /// Bfr's surfaces.
+    Bfr,
+}
+
+impl Crash {
+    const ALL: [(&'static str, Self, Against); 4] = [
+        ("masks", Self::LimitMasks, Against::LimitMasks),
+        ("stencils", Self::LimitStencils, Against::LimitStencils),
+        ("far", Self::Far, Against::Far),
+        ("bfr", Self::Bfr, Against::Bfr),
+    ];
 }
 
 /// What a planted point is off by, of the diagonal.
 const OFFSET: f64 = 1e-6;
 
 impl Plant {
+    /// The reference that is to crash.
+    pub(super) fn crash(self) -> Option<Against> {
+        let Self::Crash(crash) = self else { return None };
+        Crash::ALL.into_iter().find(|&(_, other, _)| other == crash).map(|(.., against)| against)
+    }
+
     /// The mesh that our evaluation is made to see.
     pub(super) fn mesh(self, mesh: &SubdivMesh) -> Result<SubdivMesh, VerifyError> {
         let mut mesh = mesh.clone();
@@ -77,7 +108,11 @@ impl FromStr for Plant {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let usage = || "give point[:PATCH[:POINT]], crease[:N] or swap".to_owned();
+        let usage = || "give point[:PATCH[:POINT]], crease[:N], swap or crash:masks|stencils|far|bfr".to_owned();
+        if let Some(name) = text.strip_prefix("crash:") {
+            let crash = Crash::ALL.into_iter().find(|&(known, ..)| known == name);
+            return crash.map(|(_, crash, _)| Self::Crash(crash)).ok_or_else(usage);
+        }
         let mut words = text.split(':');
         let name = words.next().unwrap_or_default();
         let numbers: Vec<usize> = words.map(|word| word.parse().map_err(|_| usage())).collect::<Result<_, _>>()?;
@@ -100,6 +135,10 @@ impl fmt::Display for Plant {
             Self::Point { patch, point: Some(point) } => write!(f, "point:{patch}:{point}"),
             Self::Crease(crease) => write!(f, "crease:{crease}"),
             Self::Swap => write!(f, "swap"),
+            Self::Crash(crash) => {
+                let name = Crash::ALL.into_iter().find(|(_, other, _)| other == crash).map_or("", |(name, ..)| name);
+                write!(f, "crash:{name}")
+            }
         }
     }
 }

@@ -1,12 +1,12 @@
 //! Tier `regular`: anywhere in OpenSubdiv's regular patches. At isolation 10 they cover all but 2^-20 of the area of an
 //! irregular face, so irregular patches are checked here too, away from dyadic points.
 
+use super::Subject;
 use super::bin::Bins;
 use super::difference::Sample;
 use super::key::{Against, Key, TierName};
 use super::references::{References, thinned};
-use super::{Subject, VerifyError};
-use crate::osd::{Answer, Bfr, Location, Reference, ReferenceJet};
+use crate::osd::{Answer, Bfr, Location, ReferenceJet};
 use crate::stam::Jet;
 use crate::statistics::scatter;
 
@@ -46,47 +46,56 @@ fn inside(subject: &Subject<'_>, patches: &[usize], each: u32) -> Vec<Location> 
     patches.iter().flat_map(in_patch).collect()
 }
 
-pub(super) fn run(subject: &Subject<'_>, references: &References, bins: &mut Bins) -> Result<(), VerifyError> {
+pub(super) fn run(subject: &Subject<'_>, references: &References<'_>, bins: &mut Bins) {
     let samples = scattered(subject, PER_FACE, BUDGET);
-    // Bfr, which has one thread, answers while limit stencils are made.
-    let ask_bfr = || Bfr::new(subject.mesh, Bfr::DEFAULT_LEVELS)?.evaluate(&samples);
     // A small patch may have been missed: none is, whatever the size of the mesh.
     let every: Vec<usize> = (0..subject.surface.patches().len()).collect();
     let mut all = [&*samples, &inside(subject, &every, PER_PATCH)].concat();
     all.sort_by_key(|sample| sample.0);
     let kept = thinned(&all);
-    let (bfr, stencils) = rayon::join(ask_bfr, || references.stencils.evaluate(&kept));
-    let answers = bfr?;
-    bins.not_asked += answers.iter().filter(|a| a.answer == Answer::NotAsked).count();
-    compare(subject, Against::Bfr, &samples, &subject.evaluate_all(&samples), &answers, bins);
-    compare(subject, Against::LimitStencils, &kept, &subject.evaluate_all(&kept), &stencils?, bins);
+    // Bfr, which has one thread, answers while limit stencils are made.
+    let (bfr, stencils) = both(|| references.bfr(Bfr::DEFAULT_LEVELS, &samples), || references.stencils(&kept));
+    if let Some(answers) = bins.answered(TierName::Regular, Against::Bfr, bfr) {
+        bins.not_asked += answers.iter().filter(|a| a.answer == Answer::NotAsked).count();
+        compare(subject, Against::Bfr, &samples, &subject.evaluate_all(&samples), &answers, bins);
+    }
+    if let Some(answers) = bins.answered(TierName::Regular, Against::LimitStencils, stencils) {
+        compare(subject, Against::LimitStencils, &kept, &subject.evaluate_all(&kept), &answers, bins);
+    }
 
     let mut judged = vec![false; every.len()];
-    ask_far(subject, references, &all, &mut judged, bins)?;
+    ask_far(subject, references, &all, &mut judged, bins);
     // A second round for patches where OpenSubdiv's end cap took the first samples.
     let missed: Vec<usize> = every.into_iter().filter(|&patch| !judged[patch]).collect();
-    ask_far(subject, references, &inside(subject, &missed, MORE_PER_PATCH), &mut judged, bins)?;
+    ask_far(subject, references, &inside(subject, &missed, MORE_PER_PATCH), &mut judged, bins);
     bins.unjudged = judged.iter().filter(|judged| !**judged).count();
-    Ok(())
+}
+
+/// Asks two references at a time. These are threads of their own, because both wait for other processes meanwhile.
+fn both<A, B: Send>(first: impl FnOnce() -> A, second: impl FnOnce() -> B + Send) -> (A, B) {
+    std::thread::scope(|scope| {
+        let second = scope.spawn(second);
+        let first = first();
+        (first, second.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
+    })
 }
 
 /// Compares with Far, and marks the patches that have a sample that was judged.
 fn ask_far(
     subject: &Subject<'_>,
-    references: &References,
+    references: &References<'_>,
     samples: &[Location],
     judged: &mut [bool],
     bins: &mut Bins,
-) -> Result<(), VerifyError> {
+) {
     // Portions bound the memory of the answers.
     for samples in samples.chunks(BUDGET) {
         let ours = subject.evaluate_all(samples);
-        let answers = references.far.evaluate(samples)?;
+        let Some(answers) = bins.answered(TierName::Regular, Against::Far, references.far(samples)) else { return };
         compare(subject, Against::Far, samples, &ours, &answers, bins);
         let regular = ours.iter().zip(&answers).filter(|(_, answer)| answer.answer == Answer::Regular);
         regular.filter_map(|(ours, _)| *ours).for_each(|(patch, _)| judged[patch] = true);
     }
-    Ok(())
 }
 
 fn compare(

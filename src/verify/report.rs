@@ -1,7 +1,7 @@
 //! The report: what JSON, JUnit and the terminal show.
 
 use super::baseline::{Baseline, Comparison};
-use super::bin::{Bin, Bins, FailedPatches, note};
+use super::bin::{self, Bin, Bins, FailedPatches, note};
 use super::clock::Timing;
 use super::conformance::Results;
 use super::difference::Sample;
@@ -86,6 +86,17 @@ pub struct KnownWrong {
     pub reason: &'static str,
 }
 
+/// A reference that did not answer in a tier: its process ended, or it reported an error.
+#[derive(Debug, Clone, Serialize)]
+pub struct Unanswered {
+    /// The tier.
+    pub tier: &'static str,
+    /// What was asked.
+    pub reference: &'static str,
+    /// Why there is no answer, such as `OpenSubdiv ended with SIGSEGV`.
+    pub reason: String,
+}
+
 /// All tiers of one mesh.
 #[derive(Debug, Clone, Serialize)]
 pub struct MeshReport {
@@ -97,9 +108,14 @@ pub struct MeshReport {
     pub faces: usize,
     /// Patches by kind.
     pub patches: BTreeMap<&'static str, usize>,
-    /// Samples of the tiers `regular` and `endcap` that Bfr was not asked: 3.5.0 reads out of bounds at interior vertices
-    /// of valence 2.
+    /// Samples of the tiers `regular` and `endcap` that Bfr was not asked: OpenSubdiv (3.5.0 to 3.6.0) reads out of bounds at
+    /// interior vertices of valence 2.
     pub reference_not_asked: usize,
+    /// Refined vertices that OpenSubdiv's limit masks have no room for, because many more faces than edges meet there; if there is
+    /// one, tier `vertex` is not asked at all.
+    pub limit_masks_not_asked: usize,
+    /// References that did not answer; each fails the mesh.
+    pub reference_unanswered: Vec<Unanswered>,
     /// Patches that no sample inside judged in tier `regular`: OpenSubdiv has an end cap all over them, so they are compared
     /// at dyadic points alone.
     pub patches_unjudged: usize,
@@ -158,7 +174,7 @@ impl Report {
     /// Collects mesh reports, of views of `size`, and the meshes that were refused.
     pub fn new(size: [u32; 2], meshes: Vec<MeshReport>, refused: Vec<Refused>) -> Self {
         let version = env!("CARGO_PKG_VERSION");
-        let opensubdiv = crate::osd::version();
+        let opensubdiv = crate::osd::version().to_string();
         let (schema, refused_allowed, baseline) = (Self::SCHEMA, false, None);
         let report = Self { schema, version, opensubdiv, pass: true, size, meshes, refused, refused_allowed, baseline };
         report.judged()
@@ -224,7 +240,13 @@ impl MeshReport {
         for patch in surface.patches() {
             *patches.entry(patch.kind.name()).or_default() += 1;
         }
-        let (reference_not_asked, patches_unjudged) = (bins.not_asked, bins.unjudged);
+        let Bins { not_asked, crowded, unjudged, .. } = bins;
+        let unanswered = |bin::Unanswered { tier, against, why }: bin::Unanswered| Unanswered {
+            tier: tier.name(),
+            reference: against.name(),
+            reason: why.to_string(),
+        };
+        let reference_unanswered: Vec<_> = bins.unanswered.into_iter().map(unanswered).collect();
         let control_faces = control_faces(mesh);
         let parts = mesh.ptex_parts();
         let failures = |failed: &FailedPatches| Failures::new(failed, surface, &control_faces, &parts);
@@ -235,7 +257,7 @@ impl MeshReport {
             let failures = failures(&bin.failed_patches);
             let row = Tier::new(key, bin, failures, &parts);
             match key.known_wrong {
-                Some(reason) => reference_known_wrong.push(KnownWrong { row, reason }),
+                Some(flaw) => reference_known_wrong.push(KnownWrong { row, reason: flaw.reason() }),
                 None => tiers.push(row),
             }
         }
@@ -244,9 +266,12 @@ impl MeshReport {
             path: None,
             faces: mesh.face_count(),
             patches,
-            reference_not_asked,
-            patches_unjudged,
-            pass: tiers.iter().chain(reference_known_wrong.iter().map(|known| &known.row)).all(|row| row.pass),
+            reference_not_asked: not_asked,
+            limit_masks_not_asked: crowded,
+            patches_unjudged: unjudged,
+            pass: reference_unanswered.is_empty()
+                && tiers.iter().chain(reference_known_wrong.iter().map(|known| &known.row)).all(|row| row.pass),
+            reference_unanswered,
             failures: failures(&all_failed),
             tiers,
             reference_known_wrong,

@@ -3,7 +3,7 @@
 use super::baseline::{Comparison, Regression};
 use super::difference::Sample;
 use super::failures::counted;
-use super::report::{MeshReport, Report, Tier};
+use super::report::{MeshReport, Report, Tier, Unanswered};
 use std::fmt::{self, Write};
 
 impl MeshReport {
@@ -18,8 +18,12 @@ impl MeshReport {
         );
         let share = |row: &Tier| row.times_allowed.unwrap_or_default();
         let closest = self.tiers.iter().filter(|row| row.pass && row.times_allowed.is_some());
+        if let Some(first) = self.reference_unanswered.first() {
+            write!(line, "  {first}").expect("strings take all text");
+        }
         match (&self.failures, closest.max_by(|a, b| share(a).total_cmp(&share(b)))) {
             (Some(failures), _) => write!(line, "  {failures}"),
+            (None, _) if !self.reference_unanswered.is_empty() => Ok(()),
             (None, Some(row)) => {
                 let percent = 100.0 * share(row);
                 write!(line, "  {percent:>4.1}% of its tolerance ({} {} / {})", row.tier, row.kind, row.reference)
@@ -59,6 +63,10 @@ impl MeshReport {
             };
             writeln!(f, "  {tier}{verdict}")?;
         }
+        for unanswered in &self.reference_unanswered {
+            let Unanswered { tier, reference, reason } = unanswered;
+            writeln!(f, "  {tier:<8} {:<7} {reference:<23} {reason}  <- FAIL", "-")?;
+        }
         for known in self.reference_known_wrong.iter().filter(|known| !(failed_only && known.row.pass)) {
             let verdict = if known.row.pass { "" } else { "  <- FAIL" };
             writeln!(f, "  {}  [reference wrong: {}]{verdict}", known.row, known.reason)?;
@@ -80,6 +88,10 @@ impl MeshReport {
                 f,
                 "  Bfr: {count} samples not asked: it reads out of bounds where two faces share two edges at a vertex"
             )?;
+        }
+        if self.limit_masks_not_asked > 0 {
+            let count = counted(self.limit_masks_not_asked, "vertex has", "vertices have");
+            writeln!(f, "  limit masks: not asked: {count} so many faces that it writes beyond its arrays")?;
         }
         if self.patches_unjudged > 0 {
             let count = counted(self.patches_unjudged, "patch is", "patches are");
@@ -138,6 +150,12 @@ impl fmt::Display for Tier {
             Some(Sample { face, u, v }) => write!(f, "  {face},{u},{v}"),
             None => Ok(()),
         }
+    }
+}
+
+impl fmt::Display for Unanswered {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} ({} / {})", self.reason, self.tier, self.reference)
     }
 }
 

@@ -2,10 +2,12 @@
 
 use super::bin::Bins;
 use super::difference::{Check, Difference, Normal, Sample};
+use super::flaw::Flaw;
 use super::key::{Against, Key, TierName};
-use super::{NORMAL_LIMIT, Subject, VerifyError, rounding};
+use super::references::{ReferenceError, References};
+use super::{NORMAL_LIMIT, Subject, rounding};
 use crate::mesh::SubdivMesh;
-use crate::osd::{Level, Refiner, Rule};
+use crate::osd::{Level, LimitMasks, Rule};
 use glam::DVec3;
 
 /// Some 20 roundings of 1e-16 on each side, level by level. Normals: OpenSubdiv's tangents are differences of world
@@ -16,37 +18,24 @@ pub(super) const NORMAL_DEG: f64 = 1e-6;
 /// Vertices that a uniform refinement may have: memory, and seconds.
 const BUDGET: usize = 400_000;
 
-/// A uniform refinement and what OpenSubdiv's masks make of its last level.
-struct Masks {
-    levels: Vec<Level>,
-    limits: Vec<DVec3>,
-    first: Vec<DVec3>,
-    second: Vec<DVec3>,
-    traits: Traits,
+/// The level of the uniform refinement at whose vertices limit masks are asked.
+fn depth(mesh: &SubdivMesh) -> u32 {
+    if mesh.face_vertices.len() * 4 <= BUDGET { 2 } else { 1 }
 }
 
-impl Masks {
-    fn of(mesh: &SubdivMesh) -> Result<Self, VerifyError> {
-        let depth = if mesh.face_vertices.len() * 4 <= BUDGET { 2 } else { 1 };
-        let refiner = Refiner::uniform(mesh, depth)?;
-        let levels = (0..refiner.level_count()).map(|i| refiner.level(i)).collect::<Result<Vec<_>, _>>()?;
-        let last = levels.last().expect("a refiner has its base level");
-        let points = refiner.interpolate(&mesh.points)?;
-        let last_points = &points[points.len() - last.vertex_count()..];
-        let [limits, first, second] = refiner.limit(last_points)?;
-        let traits = Traits::of(last, last_points);
-        Ok(Self { levels, limits, first, second, traits })
-    }
-
-    fn last(&self) -> &Level {
-        &self.levels[self.levels.len() - 1]
-    }
-}
-
-pub(super) fn run(subject: &Subject<'_>, bins: &mut Bins) -> Result<(), VerifyError> {
-    let masks = Masks::of(subject.mesh)?;
-    let (last, Masks { levels, limits, first, second, traits }) = (masks.last(), &masks);
-    let locations = locations(levels);
+pub(super) fn run(subject: &Subject<'_>, references: &References<'_>, bins: &mut Bins) {
+    let answers = references.limit_masks(depth(subject.mesh));
+    let Some(masks) = bins.answered(TierName::Vertex, Against::LimitMasks, answers) else { return };
+    let (limits, first, second) = match &masks.limits {
+        LimitMasks::Answered { positions, tangents: [first, second] } => (positions, first, second),
+        LimitMasks::NotAsked { crowded } => {
+            bins.crowded = *crowded;
+            return;
+        }
+    };
+    let traits = Traits::of(masks.last(), &masks.points);
+    let (last, traits) = (masks.last(), &traits);
+    let locations = locations(&masks.levels);
     bins.fill(locations.len(), |bins, i| {
         let (vertex, sample) = locations[i];
         let known_wrong = traits.known_wrong(last, vertex);
@@ -80,7 +69,6 @@ pub(super) fn run(subject: &Subject<'_>, bins: &mut Bins) -> Result<(), VerifyEr
         let error = jet.position.distance(limits[vertex]) / rounding.unit;
         bins.add(key, place, Difference { position: Check { error, allowed }, normal, derivative: None });
     });
-    Ok(())
 }
 
 /// What decides whether a limit mask is right.
@@ -107,12 +95,11 @@ impl Traits {
         Self { valence, restless: level.restless(), reach }
     }
 
-    /// Measured on 3.5.0; see docs/ARCHITECTURE.md.
-    fn known_wrong(&self, level: &Level, vertex: usize) -> Option<&'static str> {
+    fn known_wrong(&self, level: &Level, vertex: usize) -> Option<Flaw> {
         match level.vertex_rules[vertex] {
-            _ if self.restless[vertex] => Some("limit masks ignore finite sharpness"),
-            Rule::Dart => Some("limit mask of infinitely sharp darts"),
-            Rule::Smooth if self.valence[vertex] == 2 => Some("limit mask of interior valence 2"),
+            _ if self.restless[vertex] => Flaw::FiniteSharpnessInMasks.in_use(),
+            Rule::Dart => Flaw::DartMask.in_use(),
+            Rule::Smooth if self.valence[vertex] == 2 => Flaw::MaskOfValence2.in_use(),
             _ => None,
         }
     }
@@ -200,21 +187,23 @@ fn descend_triangle(
 pub(super) struct Mask {
     pub position: DVec3,
     pub tangents: [DVec3; 2],
-    pub known_wrong: Option<&'static str>,
+    pub known_wrong: Option<Flaw>,
 }
 
-/// The limit mask at a point of the surface; `None` where no vertex of the masks' level lies.
-pub(super) fn mask(mesh: &SubdivMesh, at: Sample) -> Result<Option<Mask>, VerifyError> {
-    let masks = Masks::of(mesh)?;
+/// The limit mask at a point of the surface; `None` where no vertex of the masks' level lies, or OpenSubdiv has no room for one.
+pub(super) fn mask(mesh: &SubdivMesh, references: &References<'_>, at: Sample) -> Result<Option<Mask>, ReferenceError> {
+    let masks = references.limit_masks(depth(mesh))?;
+    let LimitMasks::Answered { positions, tangents } = &masks.limits else { return Ok(None) };
     let mut found = None;
     visit(&masks.levels, &mut |vertex, place| {
         if place == at {
             found = Some(vertex);
         }
     });
+    let traits = Traits::of(masks.last(), &masks.points);
     Ok(found.map(|vertex| Mask {
-        position: masks.limits[vertex],
-        tangents: [masks.first[vertex], masks.second[vertex]],
-        known_wrong: masks.traits.known_wrong(masks.last(), vertex),
+        position: positions[vertex],
+        tangents: tangents.each_ref().map(|tangents| tangents[vertex]),
+        known_wrong: traits.known_wrong(masks.last(), vertex),
     }))
 }

@@ -4,7 +4,7 @@
 use super::brute;
 use super::common::meshes;
 use catoptric::mesh::{self, SubdivMesh};
-use catoptric::osd::{Far, MAX_ISOLATION, Refiner};
+use catoptric::osd::{Far, LimitMasks, MAX_ISOLATION, Refiner};
 use catoptric::stam::LimitSurface;
 use std::path::Path;
 
@@ -63,7 +63,8 @@ fn opensubdiv_is_wrong_where_we_say_so() {
         let refiner = Refiner::uniform(mesh, 1).expect("it is refined");
         let child = refiner.level(0).expect("level 0").vertex_children[vertex] as usize;
         let points = refiner.interpolate(&mesh.points).expect("it interpolates");
-        let [masks, _, _] = refiner.limit(&points[mesh.points.len()..]).expect("it has limits");
+        let limits = refiner.limit(&points[mesh.points.len()..]).expect("it has limits");
+        let LimitMasks::Answered { positions: masks, .. } = limits else { panic!("{name}: not asked") };
 
         // The oracle's cage of level 1 numbers the children of the control vertices first, in order.
         let truth = cage.settle(vertex);

@@ -5,11 +5,11 @@ use catoptric::gpu::Gpu;
 use catoptric::mesh::{Scheme, SubdivMesh};
 use catoptric::osd::{Far, LimitStencils};
 use catoptric::patch::PatchKind;
-use catoptric::verify::{VerifyError, verify};
+use catoptric::verify::{Settings, VerifyError, verify};
 use std::collections::BTreeSet;
 
 fn assert_verified(mesh: &SubdivMesh, gpu: &Gpu) -> BTreeSet<String> {
-    let report = match verify(mesh, gpu, [128, 128]) {
+    let report = match verify(mesh, gpu, &Settings { size: [128, 128], ..Settings::default() }) {
         // Boundary rule none may leave no face.
         Err(VerifyError::NoSurface) => return BTreeSet::new(),
         report => report.expect("it is verified"),

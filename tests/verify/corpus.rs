@@ -2,7 +2,7 @@
 
 use catoptric::gpu::Gpu;
 use catoptric::mesh::{self, SubdivMesh};
-use catoptric::verify::{MeshReport, verify};
+use catoptric::verify::{MeshReport, Settings, verify};
 use glam::DVec3;
 use std::path::{Path, PathBuf};
 
@@ -18,7 +18,8 @@ fn meshes(folder: &str) -> Vec<PathBuf> {
 }
 
 fn check(gpu: &Gpu, mesh: &SubdivMesh) -> MeshReport {
-    let report = verify(mesh, gpu, [96, 96]).unwrap_or_else(|error| panic!("{}: {error}", mesh.name));
+    let report = verify(mesh, gpu, &Settings { size: [96, 96], ..Settings::default() })
+        .unwrap_or_else(|error| panic!("{}: {error}", mesh.name));
     assert!(report.pass, "{report}");
     report
 }
@@ -105,7 +106,7 @@ fn thin_surfaces_are_looked_at_from_near() {
     let gpu = Gpu::new().expect("these tests need a Vulkan adapter: script/setup installs one");
     // It runs through the middle of the picture, between the centres of four pixels.
     let thread = sheet("thread", |x, y| DVec3::new(x, 0.0, 4e-3 * y));
-    let report = verify(&thread, &gpu, [2, 2]).expect("it runs");
+    let report = verify(&thread, &gpu, &Settings { size: [2, 2], ..Settings::default() }).expect("it runs");
     let seen = report.tiers.iter().find(|row| row.tier == "fragment" && row.reference == "f64").expect("a row");
     assert!(report.pass && seen.samples == 4 && seen.normal_max_deg.is_some(), "{report}");
 }

@@ -7,6 +7,7 @@ mod command;
 mod common;
 mod conformance;
 mod corpus;
+mod crash;
 mod html;
 mod inputs;
 mod only;

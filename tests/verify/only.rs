@@ -3,7 +3,11 @@
 use super::{folder, gpu, json, own, run, text};
 use catoptric::mesh;
 use catoptric::stam::LimitSurface;
-use catoptric::verify::{Only, Plant, Sample, only};
+use catoptric::verify::{Only, Plant, Sample, Settings, only};
+
+fn planted(plant: Plant) -> Settings {
+    Settings { plant: Some(plant), ..Settings::default() }
+}
 
 /// Largest difference of a control point's weights in position and, over `scale`, in the derivatives.
 fn weights_off(shown: &Only, scale: f64) -> f64 {
@@ -21,7 +25,7 @@ fn our_weights_are_those_of_the_limit_stencils() {
         let surface = LimitSurface::new(mesh).expect("the mesh is valid");
         for face in (0..surface.ptex_count() as u32).step_by(surface.ptex_count().div_ceil(6)) {
             let sample = Sample { face, u: 0.31, v: 0.77 };
-            let shown = only(mesh, None, sample, None).expect("it is shown");
+            let shown = only(mesh, None, sample, &Settings::default()).expect("it is shown");
             let Some(patch) = &shown.patch else { continue };
             // Weights are a few sums of numbers below 1; derivatives are over the side of the patch.
             let side = f64::from(1u32 << patch.depth[0].max(patch.depth[1]));
@@ -40,7 +44,7 @@ fn the_control_point_that_disagrees_is_seen() {
     let sample = Sample { face: 3, u: 0.25, v: 0.5 };
     // A moved point: the weights agree, and the points do not make our position.
     let plant = Plant::Point { patch: 3, point: None };
-    let moved = only(&mesh, Some(&gpu()), sample, Some(plant)).expect("it is shown");
+    let moved = only(&mesh, Some(&gpu()), sample, &planted(plant)).expect("it is shown");
     assert!(weights_off(&moved, 1.0) < 1e-14 && moved.weights_miss > Some(1e-8), "{moved}");
     let shader = moved.evaluations.last().expect("several");
     assert!(shader.evaluator.contains("shader") && shader.position_off < Some(2e-6), "{moved}");
@@ -51,7 +55,7 @@ fn the_control_point_that_disagrees_is_seen() {
     let [a, _] = creased.creases[0].vertices;
     let face = creased.faces().position(|(_, face)| face.contains(&a)).expect("it has a face") as u32;
     let sample = Sample { face, u: 0.4, v: 0.6 };
-    let wrong = only(&creased, None, sample, Some(Plant::Crease(0))).expect("it is shown");
+    let wrong = only(&creased, None, sample, &planted(Plant::Crease(0))).expect("it is shown");
     assert!(weights_off(&wrong, 1.0) > 1e-4 && wrong.weights_miss < Some(1e-14), "{wrong}");
 }
 

@@ -4,10 +4,14 @@ use super::{gpu, own};
 use catoptric::gpu::Gpu;
 use catoptric::mesh::{self, SubdivMesh};
 use catoptric::stam::LimitSurface;
-use catoptric::verify::{MeshReport, Plant, verify_planted};
+use catoptric::verify::{MeshReport, Plant, Settings, verify};
+
+fn settings(plant: Plant) -> Settings {
+    Settings { size: [16, 16], plant: Some(plant), ..Settings::default() }
+}
 
 fn planted(mesh: &SubdivMesh, gpu: &Gpu, plant: Plant) -> MeshReport {
-    let report = verify_planted(mesh, gpu, [16, 16], Some(plant)).unwrap_or_else(|e| panic!("{}: {e}", mesh.name));
+    let report = verify(mesh, gpu, &settings(plant)).unwrap_or_else(|e| panic!("{}: {e}", mesh.name));
     assert!(!report.pass, "{}: {plant} was not caught\n{report}", mesh.name);
     report
 }
@@ -105,7 +109,7 @@ fn what_is_not_there_cannot_be_planted() {
         (Plant::Point { patch: 0, point: Some(99) }, "control point 99"),
         (Plant::Crease(0), "crease 0 cannot be planted: the mesh has 0"),
     ] {
-        let error = verify_planted(&mesh, &gpu, [16, 16], Some(plant)).expect_err("it is refused").to_string();
+        let error = verify(&mesh, &gpu, &settings(plant)).expect_err("it is refused").to_string();
         assert!(error.contains(message), "{error}");
     }
     for word in ["point:x", "crease:1:2", "swap:1", "", "points"] {

@@ -4,7 +4,7 @@ use super::super::{Failure, Steps, progress};
 use super::inputs::Input;
 use crate::gpu::Gpu;
 use crate::page::Pictures;
-use crate::verify::{MeshReport, Plant, VerifyError, verify_planted};
+use crate::verify::{MeshReport, Settings, VerifyError, verify};
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc;
@@ -12,8 +12,7 @@ use std::sync::mpsc;
 /// How each mesh is verified.
 pub(super) struct Job<'a> {
     pub gpu: &'a Gpu,
-    pub size: [u32; 2],
-    pub plant: Option<Plant>,
+    pub settings: Settings,
     /// Pictures are wanted too.
     pub pictures: bool,
 }
@@ -32,8 +31,10 @@ impl Job<'_> {
     fn verify(&self, input: &Input) -> Result<Outcome, Failure> {
         let report = |input: &Input| -> Result<(MeshReport, Pictures), Refusal> {
             let mesh = input.mesh().map_err(Refusal::Mesh)?;
-            let report = verify_planted(&mesh, self.gpu, self.size, self.plant)?;
-            let pictures = if self.pictures { Pictures::take(&mesh, self.gpu)? } else { Pictures::default() };
+            let report = verify(&mesh, self.gpu, &self.settings)?;
+            // Pictures ask OpenSubdiv in this process, which its answers so far must have shown to be safe.
+            let safe = report.reference_unanswered.is_empty();
+            let pictures = if self.pictures && safe { Pictures::take(&mesh, self.gpu)? } else { Pictures::default() };
             Ok((report, pictures))
         };
         match (report(input), input.is_named()) {

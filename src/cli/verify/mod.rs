@@ -13,7 +13,7 @@ use crate::mesh::Scheme;
 use crate::osd::Location;
 use crate::output::check_writable;
 use crate::page::{Pictures, page};
-use crate::verify::{Baseline, MeshReport, Refused, Report, Sample, only};
+use crate::verify::{Baseline, MeshReport, Process, Refused, Report, Sample, Settings, only};
 pub use answers::parse_answers;
 pub(super) use conformance::ConformanceArgs;
 use inputs::Input;
@@ -35,7 +35,7 @@ pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
         return one(args, &inputs, sample);
     }
     let gpu = Gpu::new()?;
-    let job = Job { gpu: &gpu, size: args.size, plant: args.plant, pictures: args.html.is_some() };
+    let job = Job { gpu: &gpu, settings: settings(args)?, pictures: args.html.is_some() };
     let show = Show { width: inputs.iter().map(|input| input.name().len()).max().unwrap_or(0), args, of: inputs.len() };
     let (mut meshes, mut pictures, mut refused) = (Vec::new(), Vec::new(), Vec::new());
     many::run(&inputs, &job, |input, outcome| {
@@ -94,6 +94,24 @@ fn write_files(
     Ok(())
 }
 
+/// How meshes are verified: OpenSubdiv's evaluators run in processes of this program's own.
+fn settings(args: &VerifyArgs) -> Result<Settings, Failure> {
+    let program = std::env::current_exe().map_err(|error| {
+        Failure::Bad(format!("cannot find this program, to run OpenSubdiv in a process of its own: {error}"))
+    })?;
+    let process = Process::Worker { program, arguments: vec![WORKER.into()] };
+    Ok(Settings { size: args.size, plant: args.plant, process })
+}
+
+/// The command by which this program starts itself to answer for OpenSubdiv.
+pub(super) const WORKER: &str = "reference-worker";
+
+/// Answers for OpenSubdiv, question by question.
+pub(super) fn work() -> Result<(), Failure> {
+    let (questions, answers) = (std::io::stdin().lock(), std::io::stdout().lock());
+    crate::verify::serve(questions, answers).map_err(|error| Failure::Bad(format!("{WORKER}: {error}")))
+}
+
 fn read_baseline(path: &Path, size: [u32; 2]) -> Result<Baseline, Failure> {
     let bad = |what: String| Failure::Bad(format!("{}: {what}", path.display()));
     let json = std::fs::read(path).map_err(|error| bad(format!("cannot be read ({error}); give an earlier report")))?;
@@ -110,7 +128,7 @@ fn one(args: &VerifyArgs, inputs: &[Input], (face, u, v): Location) -> Result<()
         .map_err(|what| Failure::of_input(input, format!("--only: {what}")))?;
     // Without an adapter the shader is left out: what f64 and OpenSubdiv say does not need it.
     let gpu = Gpu::new().ok();
-    let shown = only(&mesh, gpu.as_ref(), Sample { face, u, v }, args.plant)
+    let shown = only(&mesh, gpu.as_ref(), Sample { face, u, v }, &settings(args)?)
         .map_err(|error| Failure::of_input(input, error.to_string()))?;
     if let Some(path) = &args.json {
         write_json(path, &shown)?;
