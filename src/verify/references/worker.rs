@@ -107,6 +107,9 @@ pub fn serve(questions: impl Read, answers: impl Write) -> io::Result<()> {
     Ok(())
 }
 
+/// Bytes that are expected of an answer: those of a million samples.
+const ROOM: u64 = 100 << 20;
+
 fn write(out: &mut impl Write, value: &impl Serialize) -> io::Result<()> {
     let data = postcard::to_stdvec(value).map_err(io::Error::other)?;
     out.write_all(&(data.len() as u64).to_le_bytes())?;
@@ -123,8 +126,8 @@ fn read<T: DeserializeOwned>(input: &mut impl Read) -> io::Result<Option<T>> {
         Err(error) => return Err(error),
     }
     let length = u64::from_le_bytes(length);
-    let mut data = Vec::new();
-    // Room is taken as the data comes: a length may be anything.
+    // A length may be anything, so only so much room is taken before the data comes.
+    let mut data = Vec::with_capacity(length.min(ROOM) as usize);
     if input.take(length).read_to_end(&mut data)? as u64 != length {
         return Err(io::ErrorKind::UnexpectedEof.into());
     }
