@@ -191,7 +191,7 @@ fn compare(judge: &Judge<'_>, witness: Witness<'_>, said: Option<Said>, habit: H
         let fails = check.share() > 1.0;
         seen.fails |= fails;
         // Not a number is far off.
-        seen.telling |= fails && !(check.error < TELLING * forgiven);
+        seen.telling |= fails && (check.error.is_nan() || check.error >= TELLING * forgiven);
     };
     let position =
         judged.map_or(Check { error: f64::INFINITY, allowed: judge.tolerances.position }, |(_, d)| d.position);

@@ -70,7 +70,8 @@ impl Program {
         usual.push(Program::Bfr { smooth, sharp });
         let mut stages = vec![usual];
         if has_features {
-            stages.push(tables([true, true, false]));
+            let defaults = [[true, false, false], [false, true, false], [true, true, false]];
+            stages.push(defaults.into_iter().flat_map(tables).collect());
             bfr.extend(
                 levels.clone().flat_map(|smooth| levels.clone().map(move |sharp| Program::Bfr { smooth, sharp })),
             );
@@ -79,8 +80,8 @@ impl Program {
         }
         stages.push(bfr);
         if has_features {
-            let rest = [[false, true, false], [true, false, false], [false, false, true], [true, true, true]];
-            stages.extend(rest.map(tables));
+            let single_crease = [[false, false, true], [true, false, true], [true, true, true]];
+            stages.push(single_crease.into_iter().flat_map(tables).collect());
             // Smooth features shallower than sharp ones (`AdaptiveOptions::secondaryLevel`).
             let pairs = levels.flat_map(|sharp| (1..sharp).map(move |smooth| Isolation { sharp, smooth }));
             stages.push(pairs.map(|isolation| Program::Far(FarOptions::exact(isolation, EndCap::Gregory))).collect());

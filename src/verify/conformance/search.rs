@@ -74,22 +74,33 @@ pub(super) fn search(
                 nearest = Some(near.clone());
             }
         }
-        let accepted: Vec<Candidate> = candidates.into_iter().flat_map(|(candidates, _)| candidates).collect();
-        let Some(best) = best(&accepted) else { continue };
-        let ties: Vec<&Candidate> =
-            accepted.iter().filter(|c| c.precision == best.precision && !best.likeness.beats(&c.likeness)).collect();
-        if let Some(finding) = confirm(judge, &neighbours, &by_face, best, &ties, supposed)
-            && found.as_ref().is_none_or(|f| finding.fits > f.fits)
-        {
-            let whole = finding.fits as f64 >= WHOLE * finding.of as f64;
-            found = Some(finding);
-            if whole {
-                break;
+        let mut accepted: Vec<Candidate> = candidates.into_iter().flat_map(|(candidates, _)| candidates).collect();
+        for _attempt in 0..ATTEMPTS {
+            let Some(best) = best(&accepted).cloned() else { break };
+            let same = |c: &&Candidate| c.precision == best.precision && !best.likeness.beats(&c.likeness);
+            let ties: Vec<&Candidate> = accepted.iter().filter(same).collect();
+            match confirm(judge, &neighbours, &by_face, &best, &ties, supposed) {
+                Ok(finding) => {
+                    if finding.fits as f64 >= WHOLE * finding.of as f64 {
+                        return (Some(finding), None);
+                    }
+                    if found.as_ref().is_none_or(|f| finding.fits > f.fits) {
+                        found = Some(finding);
+                    }
+                    break;
+                }
+                Err(near) => {
+                    nearest = nearest.into_iter().chain(near).reduce(|a, b| if b.part > a.part { b } else { a });
+                    accepted.retain(|c| (c.program, c.habit) != (best.program, best.habit));
+                }
             }
         }
     }
-    (found, nearest)
+    (found, nearest.filter(|nearest| nearest.part > 0.0))
 }
+
+/// Programs of a stage that explain a few faces and are tried on all.
+const ATTEMPTS: usize = 3;
 
 /// Part of the failing answers that must be explained for no other program to be asked.
 const WHOLE: f64 = 0.999;
@@ -201,7 +212,7 @@ fn candidates(
             }
         }
     }
-    (found, nearest)
+    (found, nearest.filter(|nearest| nearest.part > 0.0))
 }
 
 /// What the answers are most like; the first of those that are equally so.
@@ -224,7 +235,7 @@ fn name(program: Program, habit: Habit) -> String {
     name
 }
 
-/// Asks the program about all faces, or as many as are looked at, and says what it explains.
+/// Asks the program about all faces, or as many as are looked at, and says what it explains, or how near it comes.
 fn confirm(
     judge: &Judge<'_>,
     neighbours: &Neighbours<'_>,
@@ -232,7 +243,7 @@ fn confirm(
     best: &Candidate,
     ties: &[&Candidate],
     supposed: &Supposed<'_>,
-) -> Option<Finding> {
+) -> Result<Finding, Option<Nearest>> {
     let step = by_face.len().div_ceil(MOST).max(1);
     let faces: Vec<u32> = by_face.keys().step_by(step).copied().collect();
     let chunk = |faces: &[u32]| {
@@ -241,9 +252,10 @@ fn confirm(
         Some(Likeness::of(judge, &asked.witnesses, &replies, best.habit, best.precision))
     };
     let chunks: Option<Vec<Likeness>> = faces.par_chunks(AT_A_TIME).map(chunk).collect();
-    let all = chunks?.into_iter().reduce(Likeness::and)?;
+    let all = chunks.and_then(|chunks| chunks.into_iter().reduce(Likeness::and)).ok_or(None)?;
     if !all.explains() {
-        return None;
+        let program = name(best.program, best.habit);
+        return Err(Some(Nearest { program, part: all.part(), missed: all.missed }));
     }
     let mut mistake = String::new();
     if let Some(supposed) = &supposed.mistake {
@@ -254,7 +266,7 @@ fn confirm(
     if best.precision == Precision::Single {
         mistake += ", to the rounding of 32-bit floats";
     }
-    Some(Finding {
+    Ok(Finding {
         quantity: if supposed.positions_alone { "position" } else { "answer" },
         mistake,
         fits: all.failing_fits,
