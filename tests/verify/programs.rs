@@ -5,7 +5,7 @@ use catoptric::mesh::{Boundary, Creasing, SubdivMesh, sample};
 use catoptric::osd::{self, Bfr, EndCap, Far, FarOptions, Isolation, Location, Reference, ReferenceJet};
 use catoptric::stam::LimitSurface;
 use catoptric::verify::Sample;
-use catoptric::verify::conformance::{Answer, Results, Terms, conformance, sample_set};
+use catoptric::verify::conformance::{Answer, Results, Terms, Tolerances, conformance, sample_set};
 use glam::DVec3;
 use opensubdiv_rs::far::{
     AdaptiveOptions, PatchMap, PatchTableFactory, PrimvarRefiner, TopologyDescriptor, TopologyRefinerFactory,
@@ -92,7 +92,9 @@ fn of_the_port(mesh: &SubdivMesh, level: usize) -> Vec<Answer> {
 }
 
 fn judged(mesh: &SubdivMesh, answers: &[Answer]) -> Results {
-    let terms = Terms { per_face: PER_FACE, ..Terms::default() };
+    // What 64 bits can do: the default lets the deepest end caps pass.
+    let tolerances = Tolerances { position: 1e-9, normal_deg: 1e-4, derivative: 1e-7 };
+    let terms = Terms { per_face: PER_FACE, tolerances, partial: false };
     let report = conformance(mesh, answers, &terms).expect("it can be judged");
     let results = report.results.expect("answers were judged");
     println!("{}: {results}", mesh.name);
@@ -121,8 +123,8 @@ const PATCHES: &str = "the answers are those of OpenSubdiv's patches (Far) at is
 /// It sat the test as it is published.
 #[test]
 fn the_port_of_far_is_recognised() {
-    for mesh in [sample(), own("cube"), own("semi_sharp_corner")] {
-        for level in [1, 2, 3, 5, 7] {
+    for mesh in [sample(), own("cube"), own("semi_sharp_pole_5")] {
+        for level in [1, 2, 3, 5] {
             let said = said(&mesh, &of_the_port(&mesh, level), 1e-6);
             assert!(said.starts_with(&format!("{PATCHES} {level} with Gregory end caps")), "{}: {said}", mesh.name);
             assert!(said.ends_with("to the rounding of 32-bit floats"), "{said}");
@@ -132,7 +134,7 @@ fn the_port_of_far_is_recognised() {
 
 #[test]
 fn patches_are_recognised_at_any_isolation() {
-    for mesh in [own("cube"), own("n_gons"), own("semi_sharp_crease")] {
+    for mesh in [own("cube"), own("n_gons"), own("semi_sharp_pole_5")] {
         for level in 1..=10 {
             let answers = of_far(&mesh, gregory(level), |x| x);
             assert_said(&mesh, &answers, 1e-13, &format!("{PATCHES} {level} with Gregory end caps"));
@@ -192,7 +194,7 @@ fn bfr_is_recognised() {
     ] {
         let answers = of_osd(&mesh, |x| x, |places| Bfr::new(&mesh, levels)?.evaluate(places));
         let said = said(&mesh, &answers, 1e-7);
-        println!("{name}: {said}");
+        assert!(said.contains(name), "{said}");
     }
 }
 

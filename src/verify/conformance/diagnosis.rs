@@ -2,7 +2,7 @@
 
 use super::likeness::TYPICAL;
 use super::search::{Supposed, search};
-use super::{Answer, Judge};
+use super::{Answer, Judge, sample_set};
 use crate::mesh::{Boundary, Creasing, Scheme, SubdivMesh};
 use crate::patch::PatchKind;
 use crate::stam::{Jet, LimitSurface};
@@ -91,9 +91,9 @@ const LIKELY: f64 = 0.1;
 /// A mistake is named if it explains this part of what fails.
 const SHARE: f64 = 0.9;
 
-/// Finds what explains the failing positions; derivatives and normals where positions hold. `given` are all answers in the order of the
-/// file.
-pub(super) fn find(judge: &Judge<'_>, given: &[Answer], answers: &[Judged]) -> Diagnosis {
+/// Finds what explains the failing positions; derivatives and normals where positions hold. `per_face` are the
+/// samples of each face that were asked.
+pub(super) fn find(judge: &Judge<'_>, per_face: usize, answers: &[Judged]) -> Diagnosis {
     let fails = |check: Check| check.share() > 1.0;
     let pick = |wanted: &dyn Fn(&Judged) -> bool| -> Vec<&Judged> {
         let all: Vec<&Judged> = answers.iter().filter(|judged| wanted(judged)).collect();
@@ -117,7 +117,7 @@ pub(super) fn find(judge: &Judge<'_>, given: &[Answer], answers: &[Judged]) -> D
         judge,
         faces: Faces::of(judge.subject.mesh),
         coarse: coarse(judge, answers),
-        rows: rows(judge, given),
+        rows: rows(judge, per_face),
     };
     let mistakes = examined.mistakes(&others);
     let counts: Vec<Count> = mistakes.iter().map(|mistake| examined.count(&positions, mistake)).collect();
@@ -154,24 +154,26 @@ pub(super) fn find(judge: &Judge<'_>, given: &[Answer], answers: &[Judged]) -> D
 type Rules = (String, SubdivMesh, LimitSurface);
 
 /// Part of the failing positions that a mistake about places or rules leaves no more than rounding of, if nothing else is wrong.
-const TO_ROUNDING: f64 = 0.98;
+const TO_ROUNDING: f64 = 0.999;
 
 /// A program for which the samples in holes do not count answers the next sample instead: by the sample that was asked, the one that it
 /// answers. None where there are no such samples.
-fn rows(judge: &Judge<'_>, given: &[Answer]) -> HashMap<Row, Sample> {
-    let has_surface = |at: Sample| judge.subject.surface.locate(at.face, [at.u, at.v]).is_some();
-    let kept: Vec<Sample> = given.iter().map(|answer| answer.at).filter(|&at| has_surface(at)).collect();
-    if kept.len() == given.len() {
+fn rows(judge: &Judge<'_>, per_face: usize) -> HashMap<Row, Sample> {
+    let surface = judge.subject.surface;
+    let asked: Vec<Sample> = sample_set(surface, per_face).collect();
+    let has_surface = |at: &Sample| surface.locate(at.face, [at.u, at.v]).is_some();
+    let kept: Vec<Sample> = asked.iter().copied().filter(has_surface).collect();
+    if kept.len() == asked.len() {
         return HashMap::new();
     }
-    given.iter().zip(kept).map(|(answer, instead)| (row(answer.at), instead)).collect()
+    asked.into_iter().map(row).zip(kept).collect()
 }
 
-/// A sample, to the last bit.
-type Row = (u32, [u64; 2]);
+/// A sample as 32-bit floats, as programs may write it.
+type Row = (u32, [u32; 2]);
 
 fn row(at: Sample) -> Row {
-    (at.face, [at.u, at.v].map(f64::to_bits))
+    (at.face, [at.u, at.v].map(|x| (x as f32).to_bits()))
 }
 
 /// Whether answers everywhere are as rough as 32-bit floats: half of them off by more than 1/64 of a rounding of the largest
@@ -236,8 +238,8 @@ struct Count {
     fits: usize,
     /// Those of which it leaves no more than rounding.
     to_rounding: usize,
-    /// The most that it leaves of one, in diagonals.
-    residual: f64,
+    /// The most that it leaves of one, in diagonals; `None` if it says nothing about positions.
+    residual: Option<f64>,
 }
 
 impl Search<'_> {
@@ -251,7 +253,6 @@ impl Search<'_> {
         let (mistake, Count { fits, residual, .. }) = mistakes.into_iter().rev().max_by_key(|(_, count)| count.fits)?;
         let enough = fits > 0 && fits as f64 >= SHARE * failing.len() as f64;
         let place = self.place(failing);
-        let residual = (quantity == "position").then_some(residual);
         enough.then(|| Finding { quantity, mistake: mistake + place, fits, of: failing.len(), residual, all: None })
     }
 
@@ -329,9 +330,9 @@ impl Search<'_> {
             let most = if error.is_finite() { allowed.max(LEFT * error) } else { allowed };
             if left <= most {
                 out.fits += 1;
-                out.residual = out.residual.max(left);
+                out.to_rounding += usize::from(left <= rounded);
+                out.residual = Some(left.max(out.residual.unwrap_or(0.0)));
             }
-            out.to_rounding += usize::from(left <= rounded);
         }
         out
     }
@@ -348,7 +349,7 @@ impl Search<'_> {
         if !matches!(subject.mesh.scheme, Scheme::CatmullClark) {
             return (None, None);
         }
-        let mut alone = Supposed {
+        let alone = Supposed {
             mistake: None,
             mesh: subject.mesh,
             surface: self.surface(),
@@ -363,17 +364,10 @@ impl Search<'_> {
         let mut likely: Vec<(usize, &Mistake<'_>)> = counts.iter().map(|count| count.fits).zip(mistakes).collect();
         likely.retain(|&(fits, _)| fits as f64 >= LIKELY * positions.len() as f64 && fits > 0);
         likely.sort_by_key(|&(fits, _)| std::cmp::Reverse(fits));
-        for (_, Mistake { what, mesh, surface, place, about_rules }) in likely.into_iter().take(2) {
+        for (_, Mistake { what, mesh, surface, place, about_rules }) in likely.into_iter().take(1) {
             let mistake = Some(what.clone());
             let supposed = Supposed { mistake, mesh, surface, place, positions_alone: !about_rules };
             if let (Some(found), _) = search(self.judge, answers, &supposed) {
-                return (Some(found), None);
-            }
-        }
-        // Whatever it does about derivatives.
-        if !positions.is_empty() {
-            alone.positions_alone = true;
-            if let (Some(found), _) = search(self.judge, answers, &alone) {
                 return (Some(found), None);
             }
         }

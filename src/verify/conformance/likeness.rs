@@ -124,10 +124,15 @@ impl Likeness {
     /// Whether the program explains the answers.
     pub fn explains(&self) -> bool {
         let enough = |fits: usize, of: usize| fits as f64 >= SHARE * of as f64;
-        self.telling >= FEWEST.min(self.failing.max(1))
+        self.tells()
             && enough(self.telling_fits, self.telling)
             && enough(self.failing_fits, self.failing)
             && enough(self.fits, self.all)
+    }
+
+    /// Whether the answers fail by enough to say whose they are.
+    pub fn tells(&self) -> bool {
+        self.telling >= FEWEST.min(self.failing.max(1))
     }
 
     /// Part of the failing answers that it explains.

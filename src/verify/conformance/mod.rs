@@ -125,7 +125,7 @@ pub fn conformance(mesh: &SubdivMesh, answers: &[Answer], terms: &Terms) -> Resu
             compare(Against::Far, &Jet { position: far.position, du: far.du, dv: far.dv, normal }, far.cell);
         }
     }
-    let diagnosis = diagnosis::find(&judge, answers, &failing);
+    let diagnosis = diagnosis::find(&judge, terms.per_face, &failing);
     let results = collected.finish(&surface, answers, terms, diagnosis);
     let mut report = MeshReport::new(mesh, &surface, bins, Vec::new());
     report.timings = None;

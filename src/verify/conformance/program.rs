@@ -64,28 +64,26 @@ impl Program {
             options.map(Program::Far).collect()
         };
         let (smooth, sharp) = Bfr::DEFAULT_LEVELS;
-        let mut bfr = vec![Program::Bfr { smooth, sharp }];
         let mut usual = vec![Program::Exact];
         usual.extend(tables([false; 3]));
         usual.push(Program::Bfr { smooth, sharp });
+        usual.extend(levels.clone().map(|level| Program::Bfr { smooth: level, sharp: level }));
         let mut stages = vec![usual];
-        if has_features {
-            let defaults = [[true, false, false], [false, true, false], [true, true, false]];
-            stages.push(defaults.into_iter().flat_map(tables).collect());
-            bfr.extend(
-                levels.clone().flat_map(|smooth| levels.clone().map(move |sharp| Program::Bfr { smooth, sharp })),
-            );
-        } else {
-            bfr.extend(levels.clone().map(|smooth| Program::Bfr { smooth, sharp }));
+        if !has_features {
+            stages.push(levels.map(|smooth| Program::Bfr { smooth, sharp }).collect());
+            return stages;
         }
-        stages.push(bfr);
-        if has_features {
-            let single_crease = [[false, false, true], [true, false, true], [true, true, true]];
-            stages.push(single_crease.into_iter().flat_map(tables).collect());
-            // Smooth features shallower than sharp ones (`AdaptiveOptions::secondaryLevel`).
-            let pairs = levels.flat_map(|sharp| (1..sharp).map(move |smooth| Isolation { sharp, smooth }));
-            stages.push(pairs.map(|isolation| Program::Far(FarOptions::exact(isolation, EndCap::Gregory))).collect());
-        }
+        let defaults = [[true, false, false], [false, true, false], [true, true, false]];
+        stages.push(defaults.into_iter().flat_map(tables).collect());
+        // Smooth features less deep than sharp ones (`AdaptiveOptions::secondaryLevel`).
+        let pairs = levels.clone().flat_map(|sharp| (1..sharp).map(move |smooth| Isolation { sharp, smooth }));
+        let mut other_levels: Vec<Program> =
+            pairs.map(|isolation| Program::Far(FarOptions::exact(isolation, EndCap::Gregory))).collect();
+        other_levels
+            .extend(levels.clone().flat_map(|smooth| levels.clone().map(move |sharp| Program::Bfr { smooth, sharp })));
+        stages.push(other_levels);
+        let single_crease = [[false, false, true], [true, false, true], [true, true, true]];
+        stages.push(single_crease.into_iter().flat_map(tables).collect());
         stages
     }
 
@@ -130,8 +128,12 @@ impl Program {
             }
         }
         .into_iter();
-        let deepest = match self {
-            Program::Bfr { smooth, sharp } => 0.5f64.powi(smooth.max(sharp) as i32),
+        // Bfr does not say how large the patch is inside its face: features are corners and edges, and patches halve towards them.
+        let side = |u: f64, v: f64| match self {
+            Program::Bfr { smooth, sharp } => {
+                let to_edge = [u, 1.0 - u, v, 1.0 - v].into_iter().fold(1.0, f64::min);
+                to_edge.max(0.5f64.powi(smooth.max(sharp) as i32))
+            }
             _ => 1.0,
         };
         let reply = |place: &Option<Location>| {
@@ -154,7 +156,7 @@ impl Program {
                     Answer::Regular | Answer::EndCap => Reply::Said(Said {
                         position: jet.position,
                         derivatives: [jet.du, jet.dv],
-                        cell: jet.cell.min(if jet.answer == Answer::EndCap { deepest } else { 1.0 }),
+                        cell: jet.cell.min(if jet.answer == Answer::EndCap { side(u, v) } else { 1.0 }),
                     }),
                 },
             }

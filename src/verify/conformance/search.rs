@@ -26,7 +26,11 @@ pub(super) struct Supposed<'a> {
 }
 
 /// Control faces that every program is asked about first.
-const FEW: usize = 16;
+const FEW: usize = 12;
+
+/// Those of them that are asked about before the others, and the part of their failing answers that a program has to explain.
+const FIRST: usize = 2;
+const FIRST_PART: f64 = 0.3;
 
 /// Most control faces that a program is asked about in the end, and how many at a time.
 const MOST: usize = 2048;
@@ -57,41 +61,51 @@ pub(super) fn search(
     let neighbours = Neighbours::of(supposed.mesh);
     let by_face = by_face(answers, supposed, &neighbours);
     let fails = |judged: &&Judged| failing(judged, supposed.positions_alone);
-    let few = few(&by_face, &fails);
+    let (few, worst) = few(&by_face, &fails);
     let asked = ask(&neighbours, &by_face, &few, supposed);
+    let first = ask(&neighbours, &by_face, &worst, supposed);
     let has_features = supposed.mesh.creases.len() + supposed.mesh.corners.len() > 0 || has_boundary(supposed.mesh);
     let mut stages = Program::of_opensubdiv(has_features);
     stages.push(Program::facets());
     let mut nearest: Option<Nearest> = None;
     let mut found: Option<Finding> = None;
     for programs in stages {
-        let candidates: Vec<(Vec<Candidate>, Option<Nearest>)> = programs
-            .par_iter()
-            .map(|&program| candidates(judge, &asked, program, supposed, asked.witnesses.iter().any(|w| w.on_part)))
-            .collect();
-        for near in candidates.iter().filter_map(|(_, near)| near.as_ref()) {
+        let ask = |asked: &Asked<'_>, programs: &[Program]| -> Vec<(Vec<Candidate>, Option<Nearest>)> {
+            programs.par_iter().map(|&program| candidates(judge, asked, program, supposed)).collect()
+        };
+        let promising = |(found, near): &(Vec<Candidate>, Option<Nearest>)| {
+            !found.is_empty() || near.as_ref().is_none_or(|near| near.part >= FIRST_PART)
+        };
+        let screened = ask(&first, &programs);
+        let programs: Vec<Program> =
+            programs.iter().zip(&screened).filter(|(_, found)| promising(found)).map(|(program, _)| *program).collect();
+        let asked = ask(&asked, &programs);
+        for near in asked.iter().filter_map(|(_, near)| near.as_ref()) {
             if nearest.as_ref().is_none_or(|n| near.part > n.part) {
                 nearest = Some(near.clone());
             }
         }
-        let mut accepted: Vec<Candidate> = candidates.into_iter().flat_map(|(candidates, _)| candidates).collect();
-        for _attempt in 0..ATTEMPTS {
-            let Some(best) = best(&accepted).cloned() else { break };
-            let same = |c: &&Candidate| c.precision == best.precision && !best.likeness.beats(&c.likeness);
-            let ties: Vec<&Candidate> = accepted.iter().filter(same).collect();
-            match confirm(judge, &neighbours, &by_face, &best, &ties, supposed) {
-                Ok(finding) => {
-                    if finding.fits as f64 >= WHOLE * finding.of as f64 {
-                        return (Some(finding), None);
+        let accepted = asked.into_iter().flat_map(|(candidates, _)| candidates);
+        let (alone, full): (Vec<_>, Vec<_>) = accepted.partition(|c| c.habit.positions_alone);
+        for mut accepted in [full, alone] {
+            for _attempt in 0..ATTEMPTS {
+                let Some(best) = best(&accepted).cloned() else { break };
+                let same = |c: &&Candidate| c.precision == best.precision && !best.likeness.beats(&c.likeness);
+                let ties: Vec<&Candidate> = accepted.iter().filter(same).collect();
+                match confirm(judge, &neighbours, &by_face, &best, &ties, supposed) {
+                    Ok(finding) => {
+                        if finding.fits as f64 >= WHOLE * finding.of as f64 {
+                            return (Some(finding), None);
+                        }
+                        if found.as_ref().is_none_or(|f| finding.fits > f.fits) {
+                            found = Some(finding);
+                        }
+                        break;
                     }
-                    if found.as_ref().is_none_or(|f| finding.fits > f.fits) {
-                        found = Some(finding);
+                    Err(near) => {
+                        nearest = nearest.into_iter().chain(near).reduce(|a, b| if b.part > a.part { b } else { a });
+                        accepted.retain(|c| (c.program, c.habit) != (best.program, best.habit));
                     }
-                    break;
-                }
-                Err(near) => {
-                    nearest = nearest.into_iter().chain(near).reduce(|a, b| if b.part > a.part { b } else { a });
-                    accepted.retain(|c| (c.program, c.habit) != (best.program, best.habit));
                 }
             }
         }
@@ -139,21 +153,22 @@ fn by_face<'a>(answers: &'a [Judged], supposed: &Supposed<'_>, neighbours: &Neig
     by_face
 }
 
-/// A few faces with answers that fail, spread over all of them: half of them those on which most fail.
-fn few(by_face: &ByFace<'_>, fails: &dyn Fn(&&Judged) -> bool) -> BTreeSet<u32> {
+/// A few faces with answers that fail, spread over all of them: half of them those on which most fail. The second are the first of these.
+fn few(by_face: &ByFace<'_>, fails: &dyn Fn(&&Judged) -> bool) -> (BTreeSet<u32>, BTreeSet<u32>) {
     let count = |answers: &Vec<(&Judged, Location)>| answers.iter().filter(|(judged, _)| fails(judged)).count();
     let mut failing: Vec<(usize, u32)> =
         by_face.iter().map(|(&face, answers)| (count(answers), face)).filter(|&(count, _)| count > 0).collect();
     let step = failing.len().div_ceil(FEW / 2).max(1);
     let mut few: BTreeSet<u32> = failing.iter().step_by(step).map(|&(_, face)| face).collect();
     failing.sort_by_key(|&(count, face)| (std::cmp::Reverse(count), face));
+    let worst = failing.iter().take(FIRST).map(|&(_, face)| face).collect();
     for (_, face) in failing {
         if few.len() >= FEW {
             break;
         }
         few.insert(face);
     }
-    few
+    (few, worst)
 }
 
 fn ask<'a>(
@@ -192,27 +207,31 @@ fn candidates(
     asked: &Asked<'_>,
     program: Program,
     supposed: &Supposed<'_>,
-    parts: bool,
 ) -> (Vec<Candidate>, Option<Nearest>) {
     let (mut found, mut nearest) = (Vec::new(), None::<Nearest>);
+    let parts = asked.witnesses.iter().any(|witness| witness.on_part);
     for single_parameters in [false, true] {
         let Some(replies) = replies(program, asked, single_parameters, supposed.surface) else { continue };
-        for doubled in if parts { &[false, true][..] } else { &[false] } {
-            let habit = Habit { single_parameters, doubled: *doubled, positions_alone: supposed.positions_alone };
+        for [doubled, positions_alone] in [[false, false], [true, false], [false, true]] {
+            if doubled && !parts || supposed.positions_alone && !positions_alone {
+                continue;
+            }
+            let habit = Habit { single_parameters, doubled, positions_alone };
             for precision in [Precision::Double, Precision::Single] {
                 let likeness = Likeness::of(judge, &asked.witnesses, &replies, habit, precision);
                 if likeness.explains() {
                     found.push(Candidate { program, habit, precision, likeness });
                     break;
                 }
-                if precision == Precision::Single && nearest.as_ref().is_none_or(|n| likeness.part() > n.part) {
+                let is_nearer = nearest.as_ref().is_none_or(|n| likeness.part() > n.part);
+                if precision == Precision::Single && likeness.tells() && is_nearer {
                     let program = name(program, habit);
                     nearest = Some(Nearest { program, part: likeness.part(), missed: likeness.missed });
                 }
             }
         }
     }
-    (found, nearest.filter(|nearest| nearest.part > 0.0))
+    (found, nearest)
 }
 
 /// What the answers are most like; the first of those that are equally so.
@@ -252,7 +271,7 @@ fn confirm(
         Some(Likeness::of(judge, &asked.witnesses, &replies, best.habit, best.precision))
     };
     let chunks: Option<Vec<Likeness>> = faces.par_chunks(AT_A_TIME).map(chunk).collect();
-    let all = chunks.and_then(|chunks| chunks.into_iter().reduce(Likeness::and)).ok_or(None)?;
+    let all = chunks.and_then(|chunks| chunks.into_iter().reduce(Likeness::and)).ok_or(None::<Nearest>)?;
     if !all.explains() {
         let program = name(best.program, best.habit);
         return Err(Some(Nearest { program, part: all.part(), missed: all.missed }));
@@ -263,11 +282,15 @@ fn confirm(
     }
     mistake = mistake + "the answers are those of " + &name(best.program, best.habit);
     mistake += &also(best, ties);
+    let positions_alone = best.habit.positions_alone;
+    if positions_alone && !supposed.positions_alone {
+        mistake += ", but for derivatives and normals, which are not";
+    }
     if best.precision == Precision::Single {
         mistake += ", to the rounding of 32-bit floats";
     }
     Ok(Finding {
-        quantity: if supposed.positions_alone { "position" } else { "answer" },
+        quantity: if positions_alone { "position" } else { "answer" },
         mistake,
         fits: all.failing_fits,
         of: all.failing,
@@ -285,9 +308,14 @@ fn also(best: &Candidate, ties: &[&Candidate]) -> String {
     }
     levels.sort_unstable();
     levels.dedup();
-    match levels.as_slice() {
+    let mut also = match levels.as_slice() {
         [] => String::new(),
-        [level] => format!(" (level {level} is the same here)"),
-        [first, .., last] => format!(" (levels {first} to {last} are the same here)"),
+        [level] => format!(" (level {level} gives the same here)"),
+        [first, .., last] => format!(" (levels {first} to {last} give the same here)"),
+    };
+    let is_bfr = |program: Program| matches!(program, Program::Bfr { .. });
+    if let Some(other) = ties.iter().find(|c| c.habit == best.habit && is_bfr(c.program) != is_bfr(best.program)) {
+        also += &format!(" ({} gives the same here)", other.program);
     }
+    also
 }
