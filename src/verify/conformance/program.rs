@@ -105,7 +105,7 @@ impl Program {
         }
     }
 
-    /// What it says about points, each asked at several (ptex face, u, v); `None` where a place is not in the excerpt.
+    /// What it says at (ptex face, u, v) of the whole mesh; `None`, and faces that the excerpt does not have, have no surface.
     pub fn replies(self, ground: Ground<'_>, places: &[Option<Location>]) -> Result<Vec<Reply>, Error> {
         let Ground { excerpt, surface } = ground;
         // Faces of the whole mesh become those of the excerpt; others have no surface.

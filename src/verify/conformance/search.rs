@@ -77,8 +77,12 @@ pub(super) fn search(
             !found.is_empty() || near.as_ref().is_none_or(|near| near.part >= FIRST_PART)
         };
         let screened = ask(&first, &programs);
-        let programs: Vec<Program> =
-            programs.iter().zip(&screened).filter(|(_, found)| promising(found)).map(|(program, _)| *program).collect();
+        let programs: Vec<Program> = programs
+            .iter()
+            .zip(&screened)
+            .filter(|&(_, found)| promising(found))
+            .map(|(program, _)| *program)
+            .collect();
         let asked = ask(&asked, &programs);
         for near in asked.iter().filter_map(|(_, near)| near.as_ref()) {
             if nearest.as_ref().is_none_or(|n| near.part > n.part) {
