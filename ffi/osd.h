@@ -121,15 +121,22 @@ typedef enum osd_answer {
 } osd_answer;
 
 /* What stands for the surface where refinement ends at a feature. */
-typedef enum osd_end_cap { OSD_END_CAP_GREGORY, OSD_END_CAP_BSPLINE } osd_end_cap;
+typedef enum osd_end_cap { OSD_END_CAP_GREGORY, OSD_END_CAP_BSPLINE, OSD_END_CAP_BILINEAR } osd_end_cap;
+
+/* Bits: options of Far::PatchTableFactory in which a table is made by the library's choice instead of ours. */
+typedef enum osd_far_option {
+    OSD_FAR_SMOOTHED_CREASES = 1,     /* useInfSharpPatch = false, the library's default */
+    OSD_FAR_LEGACY_CORNERS = 2,       /* generateLegacySharpCornerPatches = true, the library's default */
+    OSD_FAR_SINGLE_CREASE = 4         /* useSingleCreasePatch = true */
+} osd_far_option;
 
 /*
  * Far::PatchTable in double precision. Sharp features are isolated to `isolation`, 1..10, all others to `secondary`,
- * 1..isolation.
+ * 1..isolation. options: bits of osd_far_option, 0 for tables that are exact where they can be.
  */
 typedef struct osd_far osd_far;
 osd_status osd_far_create(const osd_mesh *mesh, const double *points, int32_t isolation, int32_t secondary,
-                          osd_end_cap end_cap, osd_far **out);
+                          osd_end_cap end_cap, int32_t options, osd_far **out);
 void osd_far_destroy(osd_far *far);
 
 /* What a patch table holds. */

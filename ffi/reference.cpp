@@ -18,8 +18,10 @@ struct osd_far {
     std::unique_ptr<Far::PatchMap> map;
     std::vector<Point> points; // refined, then local: only end caps have these
     std::size_t refined = 0;
+    bool bilinear_caps = false; // end caps without points of their own
 
     bool is_end_cap(Far::ConstIndexArray vertices) const {
+        if (bilinear_caps && vertices.size() < 5) return true;
         return std::any_of(vertices.begin(), vertices.end(), [&](Far::Index i) { return std::size_t(i) >= refined; });
     }
 };
@@ -28,6 +30,7 @@ static Far::PatchTableFactory::Options::EndCapType to_far(osd_end_cap end_cap) {
     switch (end_cap) {
     case OSD_END_CAP_GREGORY: return Far::PatchTableFactory::Options::ENDCAP_GREGORY_BASIS;
     case OSD_END_CAP_BSPLINE: return Far::PatchTableFactory::Options::ENDCAP_BSPLINE_BASIS;
+    case OSD_END_CAP_BILINEAR: return Far::PatchTableFactory::Options::ENDCAP_BILINEAR_BASIS;
     }
     throw std::invalid_argument("unknown end cap");
 }
@@ -48,7 +51,7 @@ struct osd_bfr {
 extern "C" {
 
 osd_status osd_far_create(const osd_mesh *mesh, const double *points, int32_t isolation, int32_t secondary,
-                          osd_end_cap end_cap, osd_far **out) {
+                          osd_end_cap end_cap, int32_t library_options, osd_far **out) {
     return create(out, [&] {
         require(isolation >= 1 && isolation <= 10, "isolation must be 1 to 10");
         require(secondary >= 1 && secondary <= isolation, "secondary isolation must be 1 to that of sharp features");
@@ -56,11 +59,15 @@ osd_status osd_far_create(const osd_mesh *mesh, const double *points, int32_t is
 
         Far::PatchTableFactory::Options options = exact_options(isolation);
         options.SetEndCapType(to_far(end_cap));
+        options.useInfSharpPatch = !(library_options & OSD_FAR_SMOOTHED_CREASES);
+        options.generateLegacySharpCornerPatches = bool(library_options & OSD_FAR_LEGACY_CORNERS);
+        options.useSingleCreasePatch = bool(library_options & OSD_FAR_SINGLE_CREASE);
         Far::TopologyRefiner::AdaptiveOptions refinement = options.GetRefineAdaptiveOptions();
         refinement.SetSecondaryLevel(secondary);
         refiner->RefineAdaptive(refinement);
 
         auto far = std::make_unique<osd_far>();
+        far->bilinear_caps = end_cap == OSD_END_CAP_BILINEAR && mesh->scheme != OSD_SCHEME_BILINEAR;
         far->table.reset(Far::PatchTableFactory::Create(*refiner, options));
         if (!far->table) throw std::runtime_error("OpenSubdiv made no patch table");
         far->map = std::make_unique<Far::PatchMap>(*far->table);

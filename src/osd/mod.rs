@@ -17,7 +17,7 @@ mod version;
 
 #[cfg(feature = "peers")]
 pub use embree::{EmbreeCamera, EmbreeSamples, EmbreeSubdivision, EmbreeTriangles};
-pub use patches::{EndCap, FarNet, FarPatch, Isolation};
+pub use patches::{EndCap, FarNet, FarOptions, FarPatch, Isolation};
 pub use peers::{BfrPeer, OsdPeer, PeerSamples};
 pub use reference::{Answer, Bfr, Far, Location, Reference, ReferenceJet};
 pub use refiner::{Level, LimitMasks, NO_TWIN, Refiner, Rule};

@@ -40,6 +40,8 @@ pub enum EndCap {
     Gregory,
     /// Bicubic B-splines that ignore the extraordinary vertex (`ENDCAP_BSPLINE_BASIS`).
     BSpline,
+    /// Bilinear quads (`ENDCAP_BILINEAR_BASIS`).
+    Bilinear,
 }
 
 impl fmt::Display for EndCap {
@@ -47,7 +49,32 @@ impl fmt::Display for EndCap {
         f.pad(match self {
             Self::Gregory => "gregory",
             Self::BSpline => "bspline",
+            Self::Bilinear => "bilinear",
         })
+    }
+}
+
+/// How a patch table is made. By default it is exact where it can be; the flags are what OpenSubdiv's users have by default or can ask for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct FarOptions {
+    /// How deep it is refined.
+    pub isolation: Isolation,
+    /// What stands where refinement ends.
+    pub end_cap: EndCap,
+    /// Infinitely sharp creases are refined like extraordinary vertices, and smoothed where that ends (`useInfSharpPatch = false`, the
+    /// library's default).
+    pub smoothed_creases: bool,
+    /// Smooth corners of boundaries are sharp (`generateLegacySharpCornerPatches = true`, the library's default).
+    pub legacy_corners: bool,
+    /// Faces along semi-sharp creases are single patches (`useSingleCreasePatch = true`), which the library evaluates as if they had no
+    /// crease: their sharpness is for its shaders alone.
+    pub single_crease: bool,
+}
+
+impl FarOptions {
+    /// Exact where it can be: infinitely sharp patches on, legacy corners and single-crease patches off.
+    pub fn exact(isolation: Isolation, end_cap: EndCap) -> Self {
+        Self { isolation, end_cap, smoothed_creases: false, legacy_corners: false, single_crease: false }
     }
 }
 

@@ -1,6 +1,6 @@
 //! The regression references: OpenSubdiv's own evaluators of the limit surface.
 
-use super::{Descriptor, EndCap, Error, FarPatch, Isolation, check, int, raw};
+use super::{Descriptor, EndCap, Error, FarOptions, FarPatch, Isolation, check, int, raw};
 use crate::mesh::SubdivMesh;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -144,16 +144,33 @@ impl Far {
     /// # Errors
     /// As [`Far::new`].
     pub fn with(mesh: &SubdivMesh, isolation: Isolation, end_cap: EndCap) -> Result<Self, Error> {
+        Self::with_options(mesh, FarOptions::exact(isolation, end_cap))
+    }
+
+    /// The same by other options, with which the table is not exact on creases and at corners.
+    ///
+    /// # Errors
+    /// As [`Far::new`].
+    pub fn with_options(mesh: &SubdivMesh, options: FarOptions) -> Result<Self, Error> {
+        let FarOptions { isolation, end_cap, smoothed_creases, legacy_corners, single_crease } = options;
+        let flags = [
+            (smoothed_creases, raw::OSD_FAR_SMOOTHED_CREASES),
+            (legacy_corners, raw::OSD_FAR_LEGACY_CORNERS),
+            (single_crease, raw::OSD_FAR_SINGLE_CREASE),
+        ];
+        let flags: raw::osd_far_option = flags.iter().map(|&(on, bit)| if on { bit } else { 0 }).sum();
         let descriptor = Descriptor::new(mesh)?;
         let mut handle = std::ptr::null_mut();
         let [sharp, smooth] = [isolation.sharp, isolation.smooth].map(|level| level.min(i32::MAX as u32) as i32);
         let end_cap = match end_cap {
             EndCap::Gregory => raw::OSD_END_CAP_GREGORY,
             EndCap::BSpline => raw::OSD_END_CAP_BSPLINE,
+            EndCap::Bilinear => raw::OSD_END_CAP_BILINEAR,
         };
         // SAFETY: the descriptor outlives the call, which copies it; its indices are validated.
         check(unsafe {
-            raw::osd_far_create(&descriptor.as_raw(), descriptor.points.as_ptr(), sharp, smooth, end_cap, &mut handle)
+            let points = descriptor.points.as_ptr();
+            raw::osd_far_create(&descriptor.as_raw(), points, sharp, smooth, end_cap, flags as i32, &mut handle)
         })?;
         Ok(Self(NonNull::new(handle).expect("a table comes with status OK")))
     }

@@ -12,6 +12,7 @@ mod html;
 mod inputs;
 mod only;
 mod planted;
+mod programs;
 
 use catoptric::gpu::Gpu;
 use catoptric::mesh::{self, SubdivMesh};

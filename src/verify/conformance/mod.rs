@@ -1,13 +1,17 @@
 //! Conformance: any program's answers at (ptex face, u, v), compared with the exact limit and with OpenSubdiv.
 //!
 //! [`sample_set`] says where to ask, [`conformance`] judges the answers: position, first derivatives and normal, by patch kind,
-//! and names the [usual mistakes](Finding) where one of them explains what fails.
+//! and names the [usual mistakes](Finding) where one of them explains what fails, or the [program](Finding) whose answers they are.
 
 mod diagnosis;
+mod excerpt;
+mod likeness;
+mod program;
 mod report;
 mod samples;
+mod search;
 
-pub use diagnosis::Finding;
+pub use diagnosis::{Finding, Nearest};
 pub use report::{Quantity, Results};
 pub use samples::{DEFAULT_PER_FACE, sample_set};
 
@@ -121,7 +125,7 @@ pub fn conformance(mesh: &SubdivMesh, answers: &[Answer], terms: &Terms) -> Resu
             compare(Against::Far, &Jet { position: far.position, du: far.du, dv: far.dv, normal }, far.cell);
         }
     }
-    let diagnosis = diagnosis::find(&judge, &failing);
+    let diagnosis = diagnosis::find(&judge, terms.per_face, &failing);
     let results = collected.finish(&surface, answers, terms, diagnosis);
     let mut report = MeshReport::new(mesh, &surface, bins, Vec::new());
     report.timings = None;

@@ -1,6 +1,7 @@
 //! What a report says about answers: coverage, errors by quantity, diagnosis.
 
-use super::{Answer, Finding, Sample, Terms, Tolerances, sample_set};
+use super::diagnosis::Diagnosis;
+use super::{Answer, Finding, Nearest, Sample, Terms, Tolerances, sample_set};
 use crate::patch::PatchKind;
 use crate::stam::LimitSurface;
 use crate::verify::difference::{Check, Difference, Normal};
@@ -34,6 +35,8 @@ pub struct Results {
     pub quantities: Vec<Quantity>,
     /// Mistakes that explain what fails.
     pub diagnosis: Vec<Finding>,
+    /// The program that comes nearest to the answers, where none explains them and no usual mistake does.
+    pub nearest: Option<Nearest>,
 }
 
 /// Errors of one quantity.
@@ -122,7 +125,7 @@ impl Collected {
         }
     }
 
-    pub fn finish(self, surface: &LimitSurface, answers: &[Answer], terms: &Terms, diagnosis: Vec<Finding>) -> Results {
+    pub fn finish(self, surface: &LimitSurface, answers: &[Answer], terms: &Terms, diagnosis: Diagnosis) -> Results {
         // Programs may write parameters as 32-bit floats.
         let place = |at: Sample| (at.face, [at.u, at.v].map(|x| (x as f32).to_bits()));
         let given: HashSet<_> = answers.iter().filter(|a| a.position.is_some()).map(|a| place(a.at)).collect();
@@ -147,7 +150,8 @@ impl Collected {
             refused: self.refused,
             in_holes: self.in_holes,
             quantities: self.rows.into_iter().map(quantity).collect(),
-            diagnosis,
+            diagnosis: diagnosis.findings,
+            nearest: diagnosis.nearest,
         }
     }
 }
@@ -226,6 +230,9 @@ impl fmt::Display for Results {
         }
         if self.diagnosis.is_empty() && self.failed() > 0 {
             writeln!(f, "  diagnosis: none of the usual mistakes explains it")?;
+        }
+        if let Some(nearest) = &self.nearest {
+            writeln!(f, "  nearest: {nearest}")?;
         }
         Ok(())
     }
