@@ -38,10 +38,9 @@ impl Cause {
                 "are left by the memory limit of its control group",
                 "raise that limit or --memory-limit, or take a smaller part",
             ],
-            Self::AddressSpace => [
-                "are left by the limit of the address space (ulimit -v)",
-                "raise it, or take a smaller part",
-            ],
+            Self::AddressSpace => {
+                ["are left by the limit of the address space (ulimit -v)", "raise it, or take a smaller part"]
+            }
             Self::Data => ["are left by the limit of the data size (ulimit -d)", "raise it, or take a smaller part"],
         }
     }
@@ -83,7 +82,10 @@ pub fn free() -> Option<Limit> {
     let mut system = System::new_with_specifics(memory).ok()?;
     let machine = Limit { bytes: system.available_memory(), cause: Cause::Machine };
     let group = group(&mut system).map(|bytes| Limit { bytes, cause: Cause::Group });
-    [Some(machine).filter(|limit| limit.bytes > 0), group, granted()].into_iter().flatten().min_by_key(|limit| limit.bytes)
+    [Some(machine).filter(|limit| limit.bytes > 0), group, granted()]
+        .into_iter()
+        .flatten()
+        .min_by_key(|limit| limit.bytes)
 }
 
 /// What the limits of the process's group leave.

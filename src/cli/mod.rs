@@ -27,6 +27,7 @@ mod render;
 mod rig;
 mod rows;
 mod scene;
+mod series;
 mod settings;
 mod verify;
 

@@ -60,10 +60,10 @@ impl Node {
 
 /// Share of the tolerance that chords are held to. The rest is for where arcs meet: see `JOINT` in the module above.
 const SHARE: f64 = 0.98;
-/// Share of the tolerance that the polynomials' error may take before better ones are made, if no more than so many tolerances are left
-/// without it: two halvings, so that a polynomial serves some chords.
-const SHARE_OF_ERROR: f64 = 0.2;
-const SOON: f64 = 16.0;
+/// Share of the tolerance that the polynomials' error may take before better ones are made for some chords at once, if no more than so many
+/// tolerances are left without it: those of one halving.
+const SHARE_OF_ERROR: f64 = 0.5;
+const SOON: f64 = 4.0;
 /// What the error of a polynomial on a smaller rectangle is over the larger one's, at most, where it helps: at kinks of a field it is a
 /// half, in rounding it is 1.
 const BETTER: f64 = 0.7;
@@ -251,7 +251,9 @@ impl Tracer<'_> {
                 return;
             }
             let by_curve = if bound.by_error.is_finite() { bound.distance - bound.by_error } else { 0.0 };
-            if bound.by_error > SHARE_OF_ERROR * self.tolerance && by_curve <= SOON * self.tolerance {
+            let is_spoilt = by_curve <= SHARE * self.tolerance
+                || by_curve <= SOON * self.tolerance && bound.by_error > SHARE_OF_ERROR * self.tolerance;
+            if is_spoilt {
                 if graph.is_finest {
                     if self.is_near(graph, [from, to]) {
                         return;
@@ -271,9 +273,9 @@ impl Tracer<'_> {
     /// Adds nodes between two by polynomials on the smaller rectangle that holds the contour there, where that makes them better.
     fn fill_finer(&self, graph: &Graph, rect: Rect, ends: [Node; 2], halvings: u32, out: &mut Vec<Node>) {
         let Contour { zero, valid } = self.contour;
-        let sums = Model::new(self.scene, self.piece, &rect).ok().map(|model| {
-            (model.sum(zero), valid.map(|weights| model.sum(&weights)))
-        });
+        let sums = Model::new(self.scene, self.piece, &rect)
+            .ok()
+            .map(|model| (model.sum(zero), valid.map(|weights| model.sum(&weights))));
         match &sums {
             Some((sum, valid)) if sum.error < BETTER * graph.cell.sum.error => {
                 let cell = Cell { rect, sum, valid: valid.as_ref() };

@@ -139,8 +139,7 @@ impl Strip {
             let at = |k: Option<usize>| k.and_then(|k| of.get(k)).copied().unwrap_or(0.0);
             first * at(Some(k)) + change * at(k.checked_sub(1))
         };
-        let beside: [DVec3; 2 * N] =
-            std::array::from_fn(|k| p.get(k).copied().unwrap_or(DVec3::ZERO) - times_k(&q, k));
+        let beside: [DVec3; 2 * N] = std::array::from_fn(|k| p.get(k).copied().unwrap_or(DVec3::ZERO) - times_k(&q, k));
         let ends = [from, to].map(|tip| tip.position - self.origin);
         let off = to_bernstein(beside).into_iter().map(|point| distance(point, ends)).fold(0.0, f64::max);
         let slope: [DVec3; 2 * N - 1] =

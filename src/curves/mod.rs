@@ -140,7 +140,7 @@ impl Curve {
     }
 
     /// The curve without points that are those before them, or have the same place; the first of a closed one comes after its last.
-    fn without_repeats(mut self) -> Curve {
+    pub(crate) fn without_repeats(mut self) -> Curve {
         let is_repeated = |curve: &Curve, a: usize, b: usize| {
             curve.points[a] == curve.points[b] || curve.places[a] == curve.places[b]
         };

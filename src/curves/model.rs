@@ -449,7 +449,8 @@ mod tests {
             for axis in 0..2 {
                 let [x, t] = [at[axis], at[1 - axis]];
                 let powers = sum.powers(axis);
-                let value: f64 = (0..N * N).map(|k| powers[k / N][k % N] * x.powi((k / N) as i32) * t.powi((k % N) as i32)).sum();
+                let value: f64 =
+                    (0..N * N).map(|k| powers[k / N][k % N] * x.powi((k / N) as i32) * t.powi((k % N) as i32)).sum();
                 assert!((value - f(at)).abs() < 1e-13, "{at:?} by powers");
             }
             for k in 0..4 {

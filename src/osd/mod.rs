@@ -19,8 +19,8 @@ mod stencils;
 pub use embree::{EmbreeCamera, EmbreeSamples, EmbreeSubdivision, EmbreeTriangles};
 pub use patches::{EndCap, FarNet, FarPatch, Isolation};
 pub use peers::{BfrPeer, OsdPeer, PeerSamples};
-pub use reference::{Answer, Bfr, Far, Location, Reference, ReferenceJet};
 pub use process::{Allocator, on_out_of_memory, share_one_arena, stdout_was_closed};
+pub use reference::{Answer, Bfr, Far, Location, Reference, ReferenceJet};
 pub use refiner::{Level, NO_TWIN, Refiner, Rule};
 pub use stencils::{LimitStencils, Stencil};
 

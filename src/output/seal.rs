@@ -1,0 +1,75 @@
+//! A digest of a whole file that stands in the file: what proves that no byte of it has changed, for formats that have nothing of the kind.
+//!
+//! The file is written with a mark and room for sixteen digits after it, which count as `0` in the digest.
+
+use crate::digest::{START, fnv1a};
+use std::fs::File;
+use std::io::{Error, Read, Result, Seek, SeekFrom, Write};
+
+/// Digits of a digest, and what stands in their place while it is computed.
+pub(super) const BLANK: &str = "0000000000000000";
+/// Bytes at the start of a file among which the mark is.
+const HEAD: usize = 1 << 20;
+
+/// Where the digits are, and the digest of the file.
+fn digest(mut file: impl Read, mark: &[u8]) -> Result<(u64, [u8; BLANK.len()], u64)> {
+    let mut head = Vec::new();
+    file.by_ref().take(HEAD as u64).read_to_end(&mut head)?;
+    let found = head.windows(mark.len()).position(|window| window == mark);
+    let at = found.ok_or_else(|| Error::other("it has no digest that proves it whole"))? + mark.len();
+    let place = head.get_mut(at..at + BLANK.len()).ok_or_else(|| Error::other("it ends too early"))?;
+    let mut digits = [0; BLANK.len()];
+    digits.copy_from_slice(place);
+    place.copy_from_slice(BLANK.as_bytes());
+    let mut sum = fnv1a(START, &head);
+    let mut some = vec![0; 1 << 16];
+    loop {
+        match file.read(&mut some)? {
+            0 => return Ok((at as u64, digits, sum)),
+            count => sum = fnv1a(sum, &some[..count]),
+        }
+    }
+}
+
+/// Writes the digest of a file behind its mark.
+///
+/// # Errors
+/// Those of the file; it has no mark.
+pub(super) fn write(mut file: &File, mark: &[u8]) -> Result<()> {
+    file.rewind()?;
+    let (at, _, sum) = digest(file, mark)?;
+    file.seek(SeekFrom::Start(at))?;
+    file.write_all(format!("{sum:016x}").as_bytes())
+}
+
+/// An error if the digest behind the mark is not that of the file.
+///
+/// # Errors
+/// It is not; those of the file; it has no mark.
+pub(super) fn prove(file: impl Read, mark: &[u8]) -> Result<()> {
+    let (_, digits, sum) = digest(file, mark)?;
+    let is_whole = digits == *format!("{sum:016x}").as_bytes();
+    if is_whole { Ok(()) } else { Err(Error::other("its digest says that bytes have changed")) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Each byte that changes is noticed, and so is an end that is missing.
+    #[test]
+    fn every_byte_counts() {
+        let mut file = tempfile::tempfile().expect("a temporary file");
+        file.write_all(b"before mark=0000000000000000 and after").expect("it is written");
+        write(&file, b"mark=").expect("it is sealed");
+        let mut bytes = Vec::new();
+        file.rewind().and_then(|()| file.read_to_end(&mut bytes)).expect("it is read");
+        assert!(prove(&bytes[..], b"mark=").is_ok() && !bytes.windows(16).any(|window| window == BLANK.as_bytes()));
+        for k in 0..bytes.len() {
+            let mut changed = bytes.clone();
+            changed[k] ^= 1;
+            assert!(prove(&changed[..], b"mark=").is_err(), "byte {k}");
+            assert!(prove(&bytes[..k], b"mark=").is_err(), "the first {k} bytes");
+        }
+    }
+}
