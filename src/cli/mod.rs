@@ -78,7 +78,13 @@ impl Failure {
 
 impl From<GpuError> for Failure {
     fn from(error: GpuError) -> Self {
-        if error.is_no_adapter() { Self::NoAdapter(error.to_string()) } else { Self::Bad(error.to_string()) }
+        let limit = crate::memory::limit();
+        match error {
+            GpuError::NoAdapter => Self::NoAdapter(error.to_string()),
+            // Drivers say little of it.
+            GpuError::Device { .. } if limit.cause.is_hard() => Self::Bad(format!("{error}; at the start {limit}")),
+            _ => Self::Bad(error.to_string()),
+        }
     }
 }
 
