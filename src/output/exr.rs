@@ -157,17 +157,17 @@ fn plain(error: Error) -> std::io::Error {
 /// # Errors
 /// The file cannot be read, is no EXR, or does not prove that it is whole by the digest that [`write_exr`] puts into it.
 pub fn read_exr_made_by(mut file: impl BufRead + Seek) -> std::io::Result<Option<String>> {
+    let is_proved = seal::prove(&mut file, DIGEST_MARK)?;
+    file.rewind()?;
     let reader = ::exr::block::read(&mut file, false).map_err(plain)?;
     let found = reader.headers().iter().find_map(|header| header.own_attributes.other.get(MADE_BY.as_bytes()));
     let made_by = match found {
         Some(AttributeValue::Text(text)) => String::from_utf8(text.as_slice().to_vec()).ok(),
         _ => None,
     };
-    drop(reader);
     // Others have no digest, and nothing of theirs is proved.
-    if made_by.is_some() {
-        file.rewind()?;
-        seal::prove(file, DIGEST_MARK)?;
+    match made_by {
+        Some(_) if !is_proved => Err(std::io::Error::other("it has no digest that proves it whole")),
+        made_by => Ok(made_by),
     }
-    Ok(made_by)
 }
