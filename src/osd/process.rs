@@ -51,10 +51,21 @@ fn out_of_memory(bytes: usize) -> ! {
     let _ = writeln!(rest, "catoptric: out of memory: {bytes} more bytes are not to be had{remedy}");
     let left = rest.len();
     let written = line.len() - left;
-    let _ = std::io::stderr().write_all(&line[..written]);
+    say(&line[..written]);
     // SAFETY: it ends the process, and touches none of its memory.
     unsafe { raw::osd_end_process(2) };
     unreachable!("the process has ended")
+}
+
+/// Writes to standard error, past the lock that another thread may hold for ever.
+#[cfg(unix)]
+fn say(line: &[u8]) {
+    let _ = rustix::io::write(std::io::stderr(), line);
+}
+
+#[cfg(not(unix))]
+fn say(line: &[u8]) {
+    let _ = std::io::stderr().write_all(line);
 }
 
 fn known(pointer: *mut u8, bytes: usize) -> *mut u8 {
