@@ -30,7 +30,7 @@ fn sheet(side: usize) -> String {
 #[test]
 fn address_space_in_steps() {
     let folder = Folder::new();
-    folder.write("sheet.obj", sheet(120));
+    folder.write("sheet.obj", sheet(60));
     folder.write("samples.csv", "face,u,v\n0,0.5,0.5\n");
     let small = mesh("cube");
     let commands: [(&[&str], u64); 8] = [
