@@ -3,7 +3,8 @@
 use std::env;
 use std::path::{Path, PathBuf};
 
-const SHIM: [&str; 4] = ["ffi/refiner.cpp", "ffi/reference.cpp", "ffi/stencils.cpp", "ffi/peers.cpp"];
+const SHIM: [&str; 5] =
+    ["ffi/refiner.cpp", "ffi/reference.cpp", "ffi/stencils.cpp", "ffi/peers.cpp", "ffi/process.cpp"];
 
 fn main() {
     for file in SHIM.iter().chain(&[

@@ -24,6 +24,15 @@ const char *osd_message(void);
 /* Version of the headers that the shim was compiled with, such as "3.5.0". */
 const char *osd_version(void);
 
+/* ---- the process ------------------------------------------------------------------------------------------------- */
+
+/* 1 if the process was started without a standard output. */
+int32_t osd_stdout_was_closed(void);
+/* All threads that come allocate from one arena; nothing where the allocator has none (elsewhere than in glibc). */
+void osd_share_one_arena(void);
+/* Ends the process at once: nothing is flushed, and no destructor runs. */
+void osd_end_process(int32_t code);
+
 /* ---- control mesh ------------------------------------------------------------------------------------------------ */
 
 typedef enum osd_boundary { OSD_BOUNDARY_NONE, OSD_BOUNDARY_EDGE_ONLY, OSD_BOUNDARY_EDGE_AND_CORNER } osd_boundary;

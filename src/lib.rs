@@ -36,6 +36,7 @@ pub mod bench;
 pub mod cli;
 pub mod compare;
 pub mod curves;
+mod digest;
 pub mod field;
 pub mod gpu;
 mod kept;

@@ -2,6 +2,10 @@
 
 use std::process::ExitCode;
 
+/// Missing memory is a message, not an abort.
+#[global_allocator]
+static ALLOCATOR: catoptric::osd::Allocator = catoptric::osd::Allocator;
+
 fn main() -> ExitCode {
     silence_device_select();
     catoptric::cli::run()
@@ -18,6 +22,10 @@ fn silence_device_select() {
         return;
     }
     if let Ok(program) = std::env::current_exe() {
+        // A standard output that was closed is closed again, so that the program started anew sees it.
+        if catoptric::osd::stdout_was_closed() {
+            let _ = rustix::io::fcntl_setfd(std::io::stdout(), rustix::io::FdFlags::CLOEXEC);
+        }
         // Returns only if it fails; then the noise is the lesser evil.
         let _ = std::process::Command::new(program).args(std::env::args_os().skip(1)).env(SWITCH, "1").exec();
     }

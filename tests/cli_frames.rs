@@ -162,6 +162,112 @@ fn resuming_draws_what_is_missing_and_nothing_else() {
     assert!(message.contains("v_0001.png") && message.contains("does not say"), "{message}");
 }
 
+/// The line that tells of frames that are not whole.
+fn not_whole(output: &Output) -> String {
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{message}");
+    message.lines().find(|line| line.contains("not whole")).unwrap_or_default().to_owned()
+}
+
+/// A frame of which a byte has changed, wherever it is, or that ends too early, is drawn again; the others stay.
+#[test]
+fn frames_that_are_not_whole_are_drawn_again() {
+    for extension in ["png", "exr"] {
+        let folder = Folder::new();
+        let flags = format!("--size 24x16 --frames 2 --orbit 90 -o v.{extension}");
+        let [first, second] = [1, 2].map(|frame| format!("v_000{frame}.{extension}"));
+        folder.done(&flags);
+        let whole = folder.bytes(&second);
+        let stamp = folder.stamp(&first);
+        // The first bytes, the header, the text that says how it was made, pixels, the end.
+        let places = [0, 1, 9, whole.len() / 5, whole.len() / 3, whole.len() / 2, whole.len() - 20, whole.len() - 1];
+        for place in places {
+            let mut changed = whole.clone();
+            changed[place] ^= 0x10;
+            std::fs::write(folder.path(&second), changed).expect("a writable folder");
+            let line = not_whole(&folder.output(&format!("{flags} --resume")));
+            assert!(line.contains("1 frame is") && line.contains(&second), "byte {place} of {extension}: {line}");
+            assert!(folder.bytes(&second) == whole, "byte {place} of {extension} is not mended");
+        }
+        for length in [0, whole.len() / 2, whole.len() - 1] {
+            std::fs::write(folder.path(&second), &whole[..length]).expect("a writable folder");
+            assert!(
+                not_whole(&folder.output(&format!("{flags} --resume"))).contains(&second),
+                "{length} of {extension}"
+            );
+            assert!(folder.bytes(&second) == whole, "{length} bytes of {extension} are not mended");
+        }
+        let longer = [&whole[..], b"more"].concat();
+        std::fs::write(folder.path(&second), longer).expect("a writable folder");
+        assert!(not_whole(&folder.output(&format!("{flags} --resume"))).contains(&second));
+        assert_eq!(folder.stamp(&first), stamp, "the whole frame is drawn again");
+        assert_eq!(not_whole(&folder.output(&format!("{flags} --resume"))), "");
+    }
+}
+
+/// Of two runs that draw one series together one is refused, whatever their settings; what is there in the end is of one of them.
+#[test]
+fn one_run_at_a_time_draws_a_series() {
+    let folder = Folder::new();
+    let flags = "--size 128x128 --frames 12 --orbit 360 -o v.exr --resume";
+    let widths = ["--light-width 0.1", "--light-width 0.2", "--light-width 0.1"];
+    let start = |more: &&str| {
+        let mut command = folder.command(&format!("{flags} {more}"));
+        command.stderr(Stdio::piped()).stdout(Stdio::null()).spawn().expect("the program starts")
+    };
+    let children: Vec<_> = widths.iter().map(start).collect();
+    let outputs: Vec<Output> = children.into_iter().map(|child| child.wait_with_output().expect("a child")).collect();
+    let done: Vec<usize> = (0..widths.len()).filter(|&k| outputs[k].status.success()).collect();
+    assert!(!done.is_empty(), "none is done");
+    for output in outputs.iter().filter(|output| !output.status.success()) {
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        let is_refusal =
+            message.contains("another run is drawing this series (process ") || message.contains("other settings");
+        assert!(message.lines().count() == 1 && is_refusal, "{message}");
+    }
+    // All frames are those of one run.
+    assert_eq!(folder.names().len(), 12);
+    let again = folder.output(&format!("{flags} {}", widths[done[0]]));
+    assert!(again.status.success(), "{}", String::from_utf8_lossy(&again.stderr));
+}
+
+/// A run that was killed holds nobody up, and what it was writing goes with the next one.
+#[test]
+fn what_killed_runs_leave_is_taken_over() {
+    let folder = Folder::new();
+    let flags = "--size 256x256 --frames 40 --orbit 360 -o v.exr";
+    let mut child = folder.command(flags).stderr(Stdio::null()).spawn().expect("the program starts");
+    while !folder.path("v_0002.exr").exists() {
+        assert!(child.try_wait().expect("a child").is_none(), "it was faster");
+        std::thread::sleep(std::time::Duration::from_millis(2));
+    }
+    // While it lives, others are refused, also those that would write over its frames.
+    let message = folder.output("--size 32x32 --frames 2 --orbit 90 -o v_##.exr");
+    assert_eq!(message.status.code(), Some(2), "{}", String::from_utf8_lossy(&message.stderr));
+    child.kill().expect("a child");
+    child.wait().expect("a child");
+    let lock = folder.names().into_iter().find(|name| name.ends_with(".lock")).expect("a lock");
+    assert!(lock.starts_with(".catoptric-v_#.exr"), "{lock}");
+    // A file that is being written, and one that was an hour ago.
+    let old = std::time::SystemTime::now() - std::time::Duration::from_secs(3600);
+    for name in [".catoptric-old000.part", ".catoptric-held00.part"] {
+        let file = std::fs::File::create(folder.path(name)).expect("a writable folder");
+        file.set_modified(old).expect("its owner");
+    }
+    std::fs::write(folder.path(".catoptric-new000.part"), "").expect("a writable folder");
+    let held = std::fs::File::open(folder.path(".catoptric-held00.part")).expect("it is there");
+    held.lock().expect("a lock");
+    let stamp = folder.stamp("v_0001.exr");
+    folder.done(&format!("{flags} --resume"));
+    assert_eq!(folder.stamp("v_0001.exr"), stamp);
+    let hidden: Vec<String> = folder.names().into_iter().filter(|name| name.starts_with('.')).collect();
+    let others = [".catoptric-held00.part", ".catoptric-new000.part"];
+    // What the killed run was writing is not a minute old.
+    assert!(others.iter().all(|name| hidden.iter().any(|hidden| hidden == name)), "{hidden:?}");
+    assert!(!hidden.iter().any(|name| name.ends_with(".lock") || name == ".catoptric-old000.part"), "{hidden:?}");
+}
+
 /// The mesh is part of the settings, whatever its file is called.
 #[test]
 fn another_mesh_of_the_same_name_is_noticed() {

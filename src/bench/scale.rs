@@ -139,7 +139,7 @@ pub(super) fn rows(program: &Path, effort: Effort) -> Result<Vec<Row>, BenchErro
         let faces = mesh.face_count();
         let (stages, ours, count) = runs(|| Stages::apart(program, Contender::Ours, &path))?;
         // Beyond what is free the system would kill it, or something else.
-        let fits = FAR_BYTES * (faces as u64) < memory::free().unwrap_or(u64::MAX);
+        let fits = FAR_BYTES * (faces as u64) < memory::free().map_or(u64::MAX, |limit| limit.bytes);
         let theirs = fits.then(|| runs(|| Stages::apart(program, Contender::Osd, &path))).transpose()?;
         let point = [faces as f64, ours[0].median()];
         let slope = before.replace(point).map_or(String::new(), |[faces, seconds]| {

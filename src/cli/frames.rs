@@ -29,7 +29,7 @@ pub(super) struct FramesArgs {
     /// infinite lights loop
     #[arg(long, value_name = "DIST", value_parser = way, allow_negative_numbers = true, num_args = 0..=1, default_missing_value = "1")]
     sweep_light: Option<f64>,
-    /// Leave frames that are there already with the same settings, and draw the others
+    /// Leave frames that are there already, whole and with the same settings, and draw the others
     #[arg(long)]
     resume: bool,
 }
@@ -95,6 +95,13 @@ impl FramesArgs {
         Ok(numbers.into_iter().map(|frame| output.with_file_name(name.of(frame))).collect())
     }
 
+    /// What the file names of a series have in common, `#` in place of the number; `None` where there is no series. `animated`: as in
+    /// [`FramesArgs::check`].
+    pub(super) fn pattern(&self, output: &Path, animated: bool) -> Option<String> {
+        let name = output.file_name()?.to_str()?;
+        (animated || self.frames.is_some()).then(|| Numbered::new(name, 0).map(|name| name.pattern())).flatten()
+    }
+
     /// The rig of frame `index` of the `count` of a series, counted from 0; the first one is `rig` itself.
     pub(super) fn rig(&self, rig: &FittedRig, pattern: &Pattern, index: u32, count: u32) -> FittedRig {
         let mut rig = rig.clone();
@@ -125,18 +132,41 @@ impl FramesArgs {
         self.resume
     }
 
-    /// Whether a frame is to be drawn: not where `--resume` finds it with the same settings.
-    pub(super) fn is_missing(&self, path: &Path, made_by: &str) -> Result<bool, Failure> {
+    /// What stands where a frame of these settings goes, of which `--resume` keeps what is whole.
+    ///
+    /// # Errors
+    /// It is a frame of other settings, or no frame of ours.
+    pub(super) fn found(&self, path: &Path, made_by: &str) -> Result<Found, Failure> {
         if !(self.resume && path.exists()) {
-            return Ok(true);
+            return Ok(Found::Nothing);
         }
         match Format::of(path)?.made_by(path) {
-            Ok(Some(found)) if found == made_by => Ok(false),
+            Ok(Some(found)) if found == made_by => Ok(Found::Whole),
             Ok(Some(_)) => Err(other(path, "was made with other settings")),
             Ok(None) => Err(other(path, "does not say how it was made")),
+            Err(error) if says(path, made_by) => Ok(Found::Broken(error)),
             Err(error) => Err(other(path, &format!("cannot be read ({error})"))),
         }
     }
+}
+
+/// What stands where a frame goes.
+#[derive(Debug)]
+pub(super) enum Found {
+    Nothing,
+    /// The frame, whole.
+    Whole,
+    /// The frame once: bytes of it have changed, or are missing.
+    Broken(std::io::Error),
+}
+
+/// Whether a file that cannot be read is the frame that is wanted, or was: it has one half of the text that says how it was made, of which a
+/// byte may have changed, or it is empty.
+fn says(path: &Path, made_by: &str) -> bool {
+    let Ok(bytes) = std::fs::read(path) else { return false };
+    let halves = made_by.as_bytes().split_at(made_by.len() / 2);
+    let has = |half: &[u8]| bytes.windows(half.len()).any(|window| window == half);
+    bytes.is_empty() || has(halves.0) || has(halves.1)
 }
 
 /// A file that stands where a frame would.

@@ -27,6 +27,7 @@ mod render;
 mod rig;
 mod rows;
 mod scene;
+mod series;
 mod settings;
 mod verify;
 
@@ -77,7 +78,13 @@ impl Failure {
 
 impl From<GpuError> for Failure {
     fn from(error: GpuError) -> Self {
-        if error.is_no_adapter() { Self::NoAdapter(error.to_string()) } else { Self::Bad(error.to_string()) }
+        let limit = crate::memory::limit();
+        match error {
+            GpuError::NoAdapter => Self::NoAdapter(error.to_string()),
+            // Drivers say little of it.
+            GpuError::Device { .. } if limit.cause.is_hard() => Self::Bad(format!("{error}; at the start {limit}")),
+            _ => Self::Bad(error.to_string()),
+        }
     }
 }
 
@@ -105,7 +112,9 @@ pub fn run() -> ExitCode {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         // Help and version.
-        Err(error) if !error.use_stderr() => return exit_code(error.print().map_err(Failure::Stdout)),
+        Err(error) if !error.use_stderr() => {
+            return exit_code(check_stdout().and_then(|()| heard(error.print())));
+        }
         Err(error) => {
             // One line: what is wrong, without the usage that clap puts below it.
             let text = error.to_string();
@@ -119,7 +128,12 @@ pub fn run() -> ExitCode {
         }
     };
     discard_unfinished_when_stopped();
-    let result = cli.memory.apply().and_then(|()| match cli.command {
+    let ready = cli.memory.apply().and_then(|()| match cli.command {
+        // Known before the work, where all of the answer goes there.
+        Command::Verify(_) | Command::Quality(_) | Command::Info(_) | Command::Bench(_) => check_stdout(),
+        _ => Ok(()),
+    });
+    let result = ready.and_then(|()| match cli.command {
         Command::Render(args) => render::run(&args),
         Command::Lines(args) => lines::run(&args),
         Command::Eval(args) => eval::run(&args),
@@ -138,8 +152,6 @@ fn exit_code(result: Result<(), Failure>) -> ExitCode {
     let failure = match result {
         Ok(()) => return ExitCode::SUCCESS,
         Err(Failure::Check) => return ExitCode::from(1),
-        // Whoever read our output has seen enough.
-        Err(Failure::Stdout(error)) if error.kind() == std::io::ErrorKind::BrokenPipe => return ExitCode::SUCCESS,
         Err(failure) => failure,
     };
     let code = if matches!(failure, Failure::NoAdapter(_)) { 3 } else { 2 };
@@ -152,17 +164,46 @@ fn write_out(path: Option<&PathBuf>, text: &[u8]) -> Result<(), Failure> {
     match path {
         Some(path) => Ok(crate::output::write_whole(path, |out| out.write_all(text))?),
         None => {
+            check_stdout()?;
             let mut out = std::io::stdout().lock();
-            out.write_all(text)?;
-            Ok(out.flush()?)
+            heard(out.write_all(text).and_then(|()| out.flush()))
         }
     }
+}
+
+/// The result of writing to standard output: whoever closed the pipe that it is (`| head -1`) has read enough, and what the command finds
+/// out decides its exit code as ever.
+fn heard(written: std::io::Result<()>) -> Result<(), Failure> {
+    match written {
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
+        written => Ok(written?),
+    }
+}
+
+/// An error if nothing can be written to standard output: the standard library takes one that is closed for one that discards everything.
+fn check_stdout() -> Result<(), Failure> {
+    let closed = |what: &str| {
+        Err(Failure::Bad(format!("{what}; give the command a standard output, or a file where it takes one")))
+    };
+    if crate::osd::stdout_was_closed() {
+        return closed("standard output is closed, and the answer goes there");
+    }
+    #[cfg(unix)]
+    if rustix::fs::fcntl_getfl(std::io::stdout())
+        .is_ok_and(|flags| flags & rustix::fs::OFlags::RWMODE == rustix::fs::OFlags::RDONLY)
+    {
+        return closed("standard output is open for reading alone, and the answer goes there");
+    }
+    Ok(())
 }
 
 /// A spinner on standard error that shows what takes longer than a second, on a terminal only.
 fn progress(message: String) -> indicatif::ProgressBar {
     let bar = indicatif::ProgressBar::new_spinner().with_message(message);
-    bar.enable_steady_tick(std::time::Duration::from_secs(1));
+    // It takes a thread.
+    if !bar.is_hidden() {
+        bar.enable_steady_tick(std::time::Duration::from_secs(1));
+    }
     bar
 }
 
@@ -233,12 +274,14 @@ fn discard_unfinished_when_stopped() {
     let stops = [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|signal| ignored & (1 << (signal - 1)) == 0);
     // Without a handler the worst is a hidden file that stays.
     let Ok(mut signals) = signal_hook::iterator::Signals::new(stops) else { return };
-    std::thread::spawn(move || {
+    let wait = move || {
         for signal in signals.forever() {
             crate::output::discard_unfinished();
             let _ = signal_hook::low_level::emulate_default_handler(signal);
         }
-    });
+    };
+    // Nor is there more to lose without a thread.
+    let _ = std::thread::Builder::new().spawn(wait);
 }
 
 /// Signals that whoever started us wants ignored, as `nohup` does, a bit each; none where the system does not say (elsewhere than on

@@ -33,6 +33,11 @@ impl Numbered {
         fine.then(|| Numbered { before: name[..start].to_owned(), digits, after: name[end..].to_owned() })
     }
 
+    /// The name with `#` in place of the number, however many digits it has.
+    pub(super) fn pattern(&self) -> String {
+        format!("{}#{}", self.before, self.after)
+    }
+
     pub(super) fn of(&self, frame: u32) -> String {
         format!("{}{frame:0digits$}{}", self.before, self.after, digits = self.digits)
     }

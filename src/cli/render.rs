@@ -4,10 +4,11 @@ use super::account::Account;
 use super::args::size;
 use super::compare::Pair;
 use super::field::{ColourArgs, FieldArgs, PatternArgs};
-use super::frames::FramesArgs;
+use super::frames::{Found, FramesArgs};
 use super::patches::PatchesArgs;
 use super::rig::RigArgs;
 use super::scene::{AnimationArgs, Source, say_notes};
+use super::series::Series;
 use super::settings::{MeshAt, made_by, mesh_digest};
 use super::{Failure, Steps, progress, refined};
 use crate::field::{CurvatureKind, Method, Pattern, PlaneCurve, Scout};
@@ -159,8 +160,12 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
         let what = if args.show.is_some() { "--show" } else { "an .exr" };
         return Err(Failure::Bad(format!("--compare draws a .png of its own kind; it does not go with {what}")));
     }
+    let numbers_given = numbers.is_some();
     let paths = args.frames.paths(&args.output, numbers)?;
     check_writable(&paths[0])?;
+    // From here on no other run draws these frames.
+    let _series =
+        args.frames.pattern(&args.output, numbers_given).map(|name| Series::begin(&args.output, &name)).transpose()?;
     if let Some(json) = &args.json {
         check_writable(json)?;
     }
@@ -267,15 +272,26 @@ fn missing<'a>(
         return Ok((0..count).collect());
     }
     let mut digest = mesh_digest(first);
-    let mut missing = Vec::new();
+    let (mut missing, mut broken) = (Vec::new(), Vec::new());
     for index in 0..count {
         if times.len() > 1 && index > 0 {
             digest = mesh_digest(&source.at(times[index]).map_err(Failure::Bad)?);
         }
         let Shot { path, made_by, .. } = shot(index, digest);
-        if args.frames.is_missing(path, &made_by)? {
-            missing.push(index);
+        match args.frames.found(path, &made_by)? {
+            Found::Whole => continue,
+            Found::Nothing => {}
+            Found::Broken(error) => broken.push((path, error)),
         }
+        missing.push(index);
+    }
+    if let Some((path, error)) = broken.first() {
+        let count = broken.len();
+        let what = if count == 1 { "frame is" } else { "frames are" };
+        tell!(
+            "catoptric: {count} {what} there but not whole, and drawn again; the first: {}: {error}",
+            crate::line::printable(&path.display().to_string())
+        );
     }
     Ok(missing)
 }

@@ -1,6 +1,7 @@
 //! How a file was made, in one line that goes into it.
 
 use super::render::RenderArgs;
+use crate::digest::{START, fnv1a};
 use crate::field::{Camera, Grid, Method, Palette, Pattern, Projection};
 use crate::gpu::View;
 use crate::mesh::{Boundary, Creasing, Scheme, SubdivMesh};
@@ -179,19 +180,17 @@ fn value_name(value: &impl ValueEnum) -> String {
     value.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
 }
 
-/// FNV-1a, 64 bits (Fowler, Noll & Vo): the same on every machine and in every version, unlike the standard library's.
+/// A digest of lists of bytes.
 struct Digest(u64);
 
 impl Digest {
     fn new() -> Digest {
-        Digest(0xcbf2_9ce4_8422_2325)
+        Digest(START)
     }
 
     fn bytes(&mut self, bytes: &[u8]) {
         // The length keeps two lists from running into each other.
-        for byte in (bytes.len() as u64).to_le_bytes().iter().chain(bytes) {
-            self.0 = (self.0 ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
-        }
+        self.0 = fnv1a(fnv1a(self.0, &(bytes.len() as u64).to_le_bytes()), bytes);
     }
 }
 

@@ -1,6 +1,7 @@
 //! A contour within one cell: its ends on the cell's border, and points between them.
 
-use super::model::{Line, Rect, Sum};
+use super::chord::{Strip, Tip, distance};
+use super::model::{Line, Model, Rect, Sum};
 use super::piece::{Piece, Scene};
 use crate::field::{Contour, weighted};
 use glam::DVec3;
@@ -51,16 +52,24 @@ struct Node {
     valid: f64,
 }
 
-/// A point of the contour as the models see it.
-struct Guess {
-    position: DVec3,
-    /// How far the point may be from there.
-    off: f64,
-    valid: f64,
+impl Node {
+    fn tip(self) -> Tip {
+        Tip { at: self.at, position: self.position }
+    }
 }
 
-/// Smallest share of the tolerance that chords are held to at the places where they are measured.
-const SHARE: f64 = 0.7;
+/// Share of the tolerance that chords are held to. The rest is for where arcs meet: see `JOINT` in the module above.
+const SHARE: f64 = 0.98;
+/// Share of the tolerance that the polynomials' error may take before better ones are made for some chords at once, if no more than so many
+/// tolerances are left without it: those of one halving.
+const SHARE_OF_ERROR: f64 = 0.5;
+const SOON: f64 = 4.0;
+/// What the error of a polynomial on a smaller rectangle is over the larger one's, at most, where it helps: at kinks of a field it is a
+/// half, in rounding it is 1.
+const BETTER: f64 = 0.7;
+/// Where chords are measured that nothing bounds, and the share of the tolerance that they are held to there.
+const MEASURED: [f64; 3] = [0.5, 0.25, 0.75];
+const SHARE_MEASURED: f64 = 0.7;
 /// Most halvings of an arc.
 const HALVINGS: u32 = 16;
 /// Halvings of an arc, at most, that look for a place where it ceases to be valid; and how far V may be from linear, over its least
@@ -69,10 +78,43 @@ const HALVINGS_CUT: u32 = 4;
 const SAFE: f64 = 0.5;
 
 /// A cell, and F and V on it.
+#[derive(Clone, Copy)]
 pub(super) struct Cell<'a> {
     pub rect: Rect,
     pub sum: &'a Sum,
     pub valid: Option<&'a Sum>,
+}
+
+/// A contour on a cell, single-valued along an axis.
+struct Graph<'a> {
+    cell: Cell<'a>,
+    axis: usize,
+    strip: Strip,
+    /// All of the cell's zero set is the contour.
+    is_valid: bool,
+    /// No polynomial on a smaller rectangle is better.
+    is_finest: bool,
+}
+
+impl<'a> Graph<'a> {
+    fn new(piece: &Piece, cell: Cell<'a>, axis: usize) -> Graph<'a> {
+        let strip = Strip::new(piece, cell.rect, cell.sum, axis);
+        let is_valid = cell.valid.is_none_or(|valid| valid.range()[0] > 0.0);
+        Graph { cell, axis, strip, is_valid, is_finest: false }
+    }
+
+    /// Whether V does not pass 0 between two nodes on the same side of it: as far as it is linear, it is known between them and their
+    /// middle.
+    fn keeps_sign(&self, [from, to]: [Node; 2]) -> bool {
+        let Some(valid) = self.cell.valid.filter(|_| !self.is_valid) else { return true };
+        let Rect { low, high } = self.cell.rect;
+        let across = 1 - self.axis;
+        let part = (0.5 * (from.at[across] + to.at[across]) - low[across]) / (high[across] - low[across]);
+        let zero = self.cell.sum.line(self.axis, part).zero();
+        let middle = valid.value(if self.axis == 0 { [zero, part] } else { [part, zero] });
+        let bend = (middle - 0.5 * (from.valid + to.valid)).abs();
+        bend <= SAFE * from.valid.abs().min(to.valid.abs()).min(middle.abs())
+    }
 }
 
 /// Draws arcs of one contour on one piece.
@@ -106,9 +148,10 @@ impl Tracer<'_> {
         let [from, to] = crossings[..] else { return };
         let [(first, from), (last, to)] = [from, to];
         let mut nodes = vec![first];
-        self.fill(&cell, axis, [first, last], 0, &mut nodes);
+        let graph = Graph::new(self.piece, cell, axis);
+        self.fill(&graph, [first, last], 0, &mut nodes);
         nodes.push(last);
-        self.emit_valid(&cell, axis, &nodes, [from, to], out);
+        self.emit_valid(&graph, &nodes, [from, to], out);
     }
 
     /// Chords through a cell that is not divided further. Where two lines meet in a saddle, its middle says which ends belong
@@ -173,21 +216,6 @@ impl Tracer<'_> {
         Some(self.node(place(x), valid))
     }
 
-    /// What the models say of the arc at a part of the cell, 0 to 1, along the parameter that is not monotone.
-    fn guess(&self, Cell { rect, sum, valid }: &Cell, axis: usize, part: f64) -> Guess {
-        let line = sum.line(axis, part);
-        let zero = line.zero();
-        let place = |x: f64| if axis == 0 { [x, part] } else { [part, x] };
-        let off = sum.error / line.slope(zero).abs();
-        let [position, beside] =
-            [zero, if zero < 0.5 { zero + off } else { zero - off }].map(|x| self.piece.position(rect.at(place(x))));
-        Guess {
-            position,
-            off: if off < 0.5 { position.distance(beside) } else { f64::INFINITY },
-            valid: valid.map_or(1.0, |valid| valid.value(place(zero))),
-        }
-    }
-
     /// Whether nothing of the arc is the contour, as clearly as the model can say.
     fn is_invalid(&self, cell: &Cell, axis: usize) -> bool {
         const PROBES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
@@ -205,50 +233,91 @@ impl Tracer<'_> {
     }
 
     /// Adds nodes between two until chords are within the tolerance, and V does not pass 0 twice between them unseen.
-    fn fill(&self, cell: &Cell, axis: usize, [from, to]: [Node; 2], halvings: u32, out: &mut Vec<Node>) {
-        let is_cut = (from.valid > 0.0) != (to.valid > 0.0);
-        if halvings == HALVINGS || (!is_cut && from.position.distance(to.position) <= self.tolerance) {
+    fn fill(&self, graph: &Graph, [from, to]: [Node; 2], halvings: u32, out: &mut Vec<Node>) {
+        let [a, b] = [from, to].map(|node| node.at[1 - graph.axis]);
+        if halvings == HALVINGS || a == b {
             return;
         }
-        let [a, b] = [from, to].map(|node| node.at[1 - axis]);
-        let [low, high] = [cell.rect.low, cell.rect.high].map(|corner| corner[1 - axis]);
-        // Where points are needed is read off the model; the points are not.
-        let guess = |part: f64| self.guess(cell, axis, (a + part * (b - a) - low) / (high - low));
-        let far = |p: DVec3| distance(p, from.position, to.position) > SHARE * self.tolerance;
-        let may_be_far =
-            |guess: &Guess| distance(guess.position, from.position, to.position) + guess.off > SHARE * self.tolerance;
-        let middle = guess(0.5);
-        // As far as V is linear, it is known between the three.
-        let bend = (middle.valid - 0.5 * (from.valid + to.valid)).abs();
-        let least = from.valid.abs().min(to.valid.abs()).min(middle.valid.abs());
-        let is_known = is_cut || bend <= SAFE * least || halvings >= HALVINGS_CUT;
-        // What is not the contour needs no points. Bends to both sides may meet the chord in the middle.
+        let is_cut = (from.valid > 0.0) != (to.valid > 0.0);
+        let is_known = is_cut || halvings >= HALVINGS_CUT || graph.keeps_sign([from, to]);
+        // What is not the contour needs no points.
         let is_contour = from.valid > 0.0 || to.valid > 0.0;
-        if !is_known || (is_contour && (may_be_far(&middle) || may_be_far(&guess(0.25)))) {
-            let at = |part: f64| self.across(cell, axis, a + part * (b - a));
-            let Some(middle) = at(0.5) else { return };
-            if is_known && !far(middle.position) && !at(0.25).is_some_and(|node| far(node.position)) {
+        if is_known {
+            if !is_contour {
                 return;
             }
-            self.fill(cell, axis, [from, middle], halvings + 1, out);
-            out.push(middle);
-            self.fill(cell, axis, [middle, to], halvings + 1, out);
+            let bound = graph.strip.bound([from, to].map(Node::tip));
+            if bound.distance <= SHARE * self.tolerance {
+                return;
+            }
+            let by_curve = if bound.by_error.is_finite() { bound.distance - bound.by_error } else { 0.0 };
+            let is_spoilt = by_curve <= SHARE * self.tolerance
+                || by_curve <= SOON * self.tolerance && bound.by_error > SHARE_OF_ERROR * self.tolerance;
+            if is_spoilt {
+                if graph.is_finest {
+                    if self.is_near(graph, [from, to]) {
+                        return;
+                    }
+                } else {
+                    let rect = graph.strip.around([from, to].map(Node::tip), bound.width);
+                    return self.fill_finer(graph, rect, [from, to], halvings, out);
+                }
+            }
+        }
+        let Some(middle) = self.across(&graph.cell, graph.axis, a + 0.5 * (b - a)) else { return };
+        self.fill(graph, [from, middle], halvings + 1, out);
+        out.push(middle);
+        self.fill(graph, [middle, to], halvings + 1, out);
+    }
+
+    /// Adds nodes between two by polynomials on the smaller rectangle that holds the contour there, where that makes them better.
+    fn fill_finer(&self, graph: &Graph, rect: Rect, ends: [Node; 2], halvings: u32, out: &mut Vec<Node>) {
+        let Contour { zero, valid } = self.contour;
+        let sums = Model::new(self.scene, self.piece, &rect)
+            .ok()
+            .map(|model| (model.sum(zero), valid.map(|weights| model.sum(&weights))));
+        match &sums {
+            Some((sum, valid)) if sum.error < BETTER * graph.cell.sum.error => {
+                let cell = Cell { rect, sum, valid: valid.as_ref() };
+                self.fill(&Graph::new(self.piece, cell, graph.axis), ends, halvings, out);
+            }
+            _ => {
+                let strip = Strip::new(self.piece, graph.cell.rect, graph.cell.sum, graph.axis);
+                let finest = Graph { cell: graph.cell, strip, is_finest: true, ..*graph };
+                self.fill(&finest, ends, halvings, out);
+            }
         }
     }
 
+    /// Whether the contour is near a chord at the places where it is measured: for where rounding, or a kink of the field, leaves
+    /// polynomials that say nothing.
+    fn is_near(&self, graph: &Graph, [from, to]: [Node; 2]) -> bool {
+        let [a, b] = [from, to].map(|node| node.at[1 - graph.axis]);
+        let ends = [from.position, to.position];
+        from.position.distance(to.position) <= self.tolerance
+            || MEASURED.into_iter().all(|part| {
+                let node = self.across(&graph.cell, graph.axis, a + part * (b - a));
+                node.is_none_or(|node| distance(node.position, ends) <= SHARE_MEASURED * self.tolerance)
+            })
+    }
+
     /// The valid parts of a chain of nodes, cut where V passes 0.
-    fn emit_valid(&self, cell: &Cell, axis: usize, nodes: &[Node], sides: [Side; 2], out: &mut Vec<Arc>) {
+    fn emit_valid(&self, graph: &Graph, nodes: &[Node], sides: [Side; 2], out: &mut Vec<Arc>) {
         let mut run: Vec<Node> = Vec::new();
         let mut start = End::Side(sides[0]);
         for (k, &node) in nodes.iter().enumerate() {
             let is_valid = node.valid > 0.0;
             if k > 0 && is_valid != (nodes[k - 1].valid > 0.0) {
-                let edge =
-                    self.last_valid(cell, axis, if is_valid { [node, nodes[k - 1]] } else { [nodes[k - 1], node] });
+                let before = nodes[k - 1];
+                let pair = if is_valid { [node, before] } else { [before, node] };
+                let edge = self.last_valid(&graph.cell, graph.axis, pair);
+                // A part of a chord is another chord, which may be farther from the contour.
                 if is_valid {
                     start = End::Cut;
                     run.push(edge);
+                    self.fill(graph, [edge, node], 0, &mut run);
                 } else {
+                    self.fill(graph, [before, edge], 0, &mut run);
                     run.push(edge);
                     out.push(self.arc(&run, [start, End::Cut]));
                     run.clear();
@@ -296,13 +365,6 @@ impl Tracer<'_> {
             ends,
         }
     }
-}
-
-/// Distance of a point from a segment.
-pub(super) fn distance(p: DVec3, a: DVec3, b: DVec3) -> f64 {
-    let (ab, ap) = (b - a, p - a);
-    let t = ab.dot(ap) / ab.length_squared();
-    (ap - ab * if t.is_finite() { t.clamp(0.0, 1.0) } else { 0.0 }).length()
 }
 
 /// Part of a range within which secants gain digits with every step.

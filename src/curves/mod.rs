@@ -8,11 +8,13 @@
 //! through 25 of its values, with a margin for the polynomial's error, which is measured, not proven.
 //! Changes against Ulmet, sec. 5: no grid that a loop could slip through, and no division by s . k, so that lines run up to the
 //! horizon of the light.
+//! How far chords are from the contour is bounded, not sampled: see `chord`.
 //! Practice: all points are zeros of F to the last digits, found between bounds. Values are moved by a few roundings: where a mesh
 //! is symmetric, contours lie on edges and meet in saddles, and the contour of a moved value does neither. So lines that meet in a
 //! saddle pass it at about a millionth of its size, as one of the two pairs of branches.
 
 mod arc;
+mod chord;
 mod divide;
 mod join;
 mod levels;
@@ -61,6 +63,10 @@ pub struct Curve {
 /// Roundings by which values are moved: many times what evaluation makes, and far below what anybody asks for.
 const MOVED: f64 = 512.0;
 
+/// Part of the tolerance by which arcs that are joined may end at different points before both are kept: rounding is far less, but ends at
+/// sharp edges are joined up to a billionth of the diagonal. What is left out moves a chord by no more, which arcs leave room for.
+const JOINT: f64 = 0.01;
+
 /// Part of the tolerance below which a whole line is no line: normals at some corners turn for ever, by one over the level.
 const SHORTEST: f64 = 1e-3;
 
@@ -97,38 +103,61 @@ pub fn trace(
     let curves = families.par_iter().zip(&wanted).flat_map_iter(|(arcs, wanted)| {
         let mut chains = join::join(arcs, &adjacency, surface.diagonal());
         chains.sort_by_key(|chain| chain.arcs[0].0);
-        let curves = chains.into_iter().map(|chain| Curve::new(surface, wanted, arcs, &chain));
+        let curves = chains.into_iter().map(|chain| Curve::new(surface, wanted, arcs, &chain, JOINT * tolerance));
         curves.filter(|curve| curve.points.len() > 1 && curve.length() > SHORTEST * tolerance)
     });
     curves.collect()
 }
 
 impl Curve {
-    fn new(surface: &LimitSurface, wanted: &Wanted, arcs: &[Arc], chain: &Chain) -> Curve {
+    fn new(surface: &LimitSurface, wanted: &Wanted, arcs: &[Arc], chain: &Chain, joint: f64) -> Curve {
         let Wanted { light, value, .. } = *wanted;
         let mut curve = Curve { value, light, closed: chain.closed, points: Vec::new(), places: Vec::new() };
         for &(arc, turned) in &chain.arcs {
-            curve.append(surface, &arcs[arc], turned);
+            curve.append(surface, &arcs[arc], turned, joint);
         }
-        if curve.closed && curve.points.len() > 3 {
+        let is_round = |points: &[DVec3]| points[0].distance(points[points.len() - 1]) <= joint;
+        if curve.closed && curve.points.len() > 1 && is_round(&curve.points) {
             // The end of the last arc is the start of the first.
             curve.points.pop();
             curve.places.pop();
         }
-        curve
+        curve.without_repeats()
     }
 
-    fn append(&mut self, surface: &LimitSurface, arc: &Arc, turned: bool) {
+    fn append(&mut self, surface: &LimitSurface, arc: &Arc, turned: bool, joint: f64) {
         let patch = &surface.patches()[arc.patch];
-        // Where arcs are joined they share a point.
-        let skip = usize::from(!self.points.is_empty());
         let count = arc.points.len();
-        for k in skip..count {
+        let first = if turned { count - 1 } else { 0 };
+        // Where arcs are joined they share a point.
+        let is_shared = self.points.last().is_some_and(|last| last.distance(arc.points[first]) <= joint);
+        for k in usize::from(is_shared)..count {
             let k = if turned { count - 1 - k } else { k };
             let [u, v] = patch.to_ptex(arc.places[k]);
             self.points.push(arc.points[k]);
             self.places.push(Place { face: patch.ptex, u, v });
         }
+    }
+
+    /// The curve without points that are those before them, or have the same place; the first of a closed one comes after its last.
+    pub(crate) fn without_repeats(mut self) -> Curve {
+        let is_repeated = |curve: &Curve, a: usize, b: usize| {
+            curve.points[a] == curve.points[b] || curve.places[a] == curve.places[b]
+        };
+        let mut kept: Vec<usize> = Vec::with_capacity(self.points.len());
+        for k in 0..self.points.len() {
+            if kept.last().is_none_or(|&last| !is_repeated(&self, last, k)) {
+                kept.push(k);
+            }
+        }
+        while self.closed && kept.len() > 1 && is_repeated(&self, kept[0], kept[kept.len() - 1]) {
+            kept.pop();
+        }
+        if kept.len() < self.points.len() {
+            self.points = kept.iter().map(|&k| self.points[k]).collect();
+            self.places = kept.iter().map(|&k| self.places[k]).collect();
+        }
+        self
     }
 
     /// Its length, world units.

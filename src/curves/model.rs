@@ -4,7 +4,7 @@ use super::piece::{Piece, Scene};
 use crate::field::Functions;
 
 /// Points each way: polynomials of degree 4.
-const N: usize = 5;
+pub(super) const N: usize = 5;
 /// Chebyshev-Lobatto points, which have corners and edges among them.
 const NODES: [f64; N] = [0.0, 0.146_446_609_406_726_24, 0.5, 0.853_553_390_593_273_8, 1.0];
 /// Where the polynomials are tried: between the nodes, along u and along v.
@@ -241,6 +241,35 @@ impl Sum {
 }
 
 impl Sum {
+    /// Coefficients of x^i t^j of the polynomial, a row an i: x is the parameter of `axis`, t the other one, both 0 to 1.
+    pub fn powers(&self, axis: usize) -> [[f64; N]; N] {
+        let of = |i: usize, j: usize| self.coefficients[if axis == 0 { j * N + i } else { i * N + j }];
+        let by_t: [Line; N] = std::array::from_fn(|i| Line::new(std::array::from_fn(|j| of(i, j))));
+        let by_x: [Line; N] = std::array::from_fn(|j| Line::new(std::array::from_fn(|i| by_t[i].0[j])));
+        std::array::from_fn(|i| std::array::from_fn(|j| by_x[j].0[i]))
+    }
+
+    /// Largest second derivatives of the polynomial, which the second differences of its coefficients bound: twice along `axis`, along
+    /// both parameters, and twice along the other one.
+    pub fn bend(&self, axis: usize) -> [f64; 3] {
+        let of = |i: usize, j: usize| self.coefficients[j * N + i];
+        let [mut u, mut mixed, mut v] = [0.0f64; 3];
+        for k in 0..N {
+            for i in 1..N - 1 {
+                u = u.max((of(i - 1, k) - 2.0 * of(i, k) + of(i + 1, k)).abs());
+                v = v.max((of(k, i - 1) - 2.0 * of(k, i) + of(k, i + 1)).abs());
+            }
+        }
+        for j in 1..N {
+            for i in 1..N {
+                mixed = mixed.max((of(i, j) - of(i - 1, j) - of(i, j - 1) + of(i - 1, j - 1)).abs());
+            }
+        }
+        let degree = (N - 1) as f64;
+        let [u, mixed, v] = [degree * (degree - 1.0) * u, degree * degree * mixed, degree * (degree - 1.0) * v];
+        if axis == 0 { [u, mixed, v] } else { [v, mixed, u] }
+    }
+
     /// The polynomial's value.
     pub fn value(&self, at: [f64; 2]) -> f64 {
         evaluate(&self.coefficients, at)
@@ -417,6 +446,13 @@ mod tests {
                 assert!((sum.line(axis, at[1 - axis]).value(at[axis]) - f(at)).abs() < 1e-14, "{at:?} along {axis}");
             }
             assert!((evaluate(&bernstein, at) - f(at)).abs() < 1e-14, "{at:?}");
+            for axis in 0..2 {
+                let [x, t] = [at[axis], at[1 - axis]];
+                let powers = sum.powers(axis);
+                let value: f64 =
+                    (0..N * N).map(|k| powers[k / N][k % N] * x.powi((k / N) as i32) * t.powi((k % N) as i32)).sum();
+                assert!((value - f(at)).abs() < 1e-13, "{at:?} by powers");
+            }
             for k in 0..4 {
                 let quarter = &halves(&halves(&bernstein, N, 1)[k % 2], 1, N)[k / 2];
                 let of_whole = [0.5 * (at[0] + (k % 2) as f64), 0.5 * (at[1] + (k / 2) as f64)];

@@ -98,6 +98,38 @@ impl Piece {
         self.origin + self.scale * weighted(&bt, &[0, 1, 2, 3].map(|j| weighted(&bs, &rows[j])))
     }
 
+    /// Coefficients of x^i t^j of the position less the origin, a row an i, world units; and the origin. x is the parameter of `axis`, t the
+    /// other one.
+    pub fn powers(&self, axis: usize) -> ([[DVec3; 4]; 4], DVec3) {
+        let of_line = |[a, b, c, d]: [DVec3; 4]| {
+            [(a + 4.0 * b + c) / 6.0, (c - a) / 2.0, (a - 2.0 * b + c) / 2.0, (d - a + 3.0 * (b - c)) / 6.0]
+        };
+        let of = |i: usize, j: usize| self.net[if axis == 0 { 4 * j + i } else { 4 * i + j }];
+        let by_t: [[DVec3; 4]; 4] = std::array::from_fn(|i| of_line(std::array::from_fn(|j| of(i, j))));
+        let by_x: [[DVec3; 4]; 4] = std::array::from_fn(|j| of_line(std::array::from_fn(|i| by_t[i][j])));
+        (std::array::from_fn(|i| std::array::from_fn(|j| self.scale * by_x[j][i])), self.origin)
+    }
+
+    /// Largest second derivatives of the position, which the second differences of the B-spline points bound: twice along `axis`, along
+    /// both parameters, and twice along the other one.
+    pub fn bend(&self, axis: usize) -> [f64; 3] {
+        let of = |i: usize, j: usize| self.net[4 * j + i];
+        let [mut u, mut mixed, mut v] = [0.0f64; 3];
+        for k in 0..4 {
+            for i in 1..3 {
+                u = u.max((of(i - 1, k) - 2.0 * of(i, k) + of(i + 1, k)).length());
+                v = v.max((of(k, i - 1) - 2.0 * of(k, i) + of(k, i + 1)).length());
+            }
+        }
+        for j in 1..4 {
+            for i in 1..4 {
+                mixed = mixed.max((of(i, j) - of(i - 1, j) - of(i, j - 1) + of(i - 1, j - 1)).length());
+            }
+        }
+        let [u, mixed, v] = [u, mixed, v].map(|bend| self.scale * bend);
+        if axis == 0 { [u, mixed, v] } else { [v, mixed, u] }
+    }
+
     /// Whether rounding leaves ten digits of a curvature: it is a second difference of points over the square of their distance.
     fn is_known(&self, curvature: &Curvature, field: &Field) -> bool {
         let Method::Curvature(kind) = &field.method else { return true };

@@ -105,7 +105,7 @@ impl<'a> Look<'a> {
                 part.push(to);
             }
         }
-        let Some(mut last) = open else { return parts.into_iter().map(|part| rebuilt(curve, part, false)).collect() };
+        let Some(mut last) = open else { return rebuilt(curve, parts) };
         if curve.closed {
             if parts.is_empty() && last.len() == count + 1 {
                 return vec![curve.clone()];
@@ -115,11 +115,11 @@ impl<'a> Look<'a> {
                 last.pop();
                 last.append(first);
                 *first = last;
-                return parts.into_iter().map(|part| rebuilt(curve, part, false)).collect();
+                return rebuilt(curve, parts);
             }
         }
         parts.push(last);
-        parts.into_iter().map(|part| rebuilt(curve, part, false)).collect()
+        rebuilt(curve, parts)
     }
 
     /// Where a segment appears or disappears, between a part of it that was looked at and a later one.
@@ -152,7 +152,11 @@ fn between(from: At, to: At, part: f64) -> At {
     At { position: from.position.lerp(to.position, part), place }
 }
 
-fn rebuilt(curve: &Curve, part: Vec<At>, closed: bool) -> Curve {
-    let (points, places) = part.into_iter().map(|at| (at.position, at.place)).unzip();
-    Curve { closed, points, places, value: curve.value, light: curve.light }
+/// Open curves of the parts that have two points at least.
+fn rebuilt(curve: &Curve, parts: Vec<Vec<At>>) -> Vec<Curve> {
+    let of_part = |part: Vec<At>| {
+        let (points, places) = part.into_iter().map(|at| (at.position, at.place)).unzip();
+        Curve { closed: false, points, places, value: curve.value, light: curve.light }.without_repeats()
+    };
+    parts.into_iter().map(of_part).filter(|part| part.points.len() > 1).collect()
 }

@@ -50,6 +50,9 @@ pub enum GpuError {
     /// There is no Vulkan adapter, not even a software one.
     #[error("no usable GPU adapter: install mesa-vulkan-drivers")]
     NoAdapter,
+    /// The shell's limits leave too little for the adapter's driver, which would end the process, or hide the adapter.
+    #[error("to open a GPU adapter {0}")]
+    Memory(#[from] crate::memory::TooMuch),
     /// The adapter failed.
     #[error("GPU adapter {adapter}: {message}")]
     Device {

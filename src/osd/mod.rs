@@ -9,6 +9,7 @@
 mod embree;
 mod patches;
 mod peers;
+mod process;
 mod raw;
 mod reference;
 mod refiner;
@@ -19,6 +20,7 @@ mod version;
 pub use embree::{EmbreeCamera, EmbreeSamples, EmbreeSubdivision, EmbreeTriangles};
 pub use patches::{EndCap, FarNet, FarOptions, FarPatch, Isolation};
 pub use peers::{BfrPeer, OsdPeer, PeerSamples};
+pub use process::{Allocator, on_out_of_memory, share_one_arena, stdout_was_closed};
 pub use reference::{Answer, Bfr, Far, Location, Reference, ReferenceJet};
 pub use refiner::{Level, LimitMasks, NO_TWIN, Refiner, Rule};
 pub use stencils::{LimitStencils, Stencil};
@@ -51,7 +53,13 @@ fn check(status: raw::osd_status) -> Result<(), Error> {
     }
     // SAFETY: osd_message returns a C string that lives until the next call on this thread.
     let message = unsafe { CStr::from_ptr(raw::osd_message()) };
-    Err(Error::OpenSubdiv(message.to_string_lossy().trim().replace('\n', " ")))
+    let message = message.to_string_lossy();
+    if message.contains("bad_alloc") {
+        let limit = crate::memory::limit();
+        let at_start = if limit.bytes == u64::MAX { String::new() } else { format!("; at the start {limit}") };
+        return Err(Error::OpenSubdiv(format!("out of memory{at_start}")));
+    }
+    Err(Error::OpenSubdiv(message.trim().replace('\n', " ")))
 }
 
 /// A count or index as the C interface takes it.

@@ -1,6 +1,7 @@
 //! OpenEXR pictures: colour, and what every pixel's centre sees, in full precision.
 
-use super::{MADE_BY, OutputError, write_whole};
+use super::whole::write_sealed;
+use super::{MADE_BY, OutputError, seal};
 use crate::field::{Camera, Projection};
 use crate::gpu::{LinearFrame, NO_PATCH, PatchSource, SurfaceImage};
 use ::exr::error::Error;
@@ -14,6 +15,11 @@ use std::path::Path;
 
 /// `ptex.face` of a pixel that sees no surface.
 pub const NO_FACE: u32 = u32::MAX;
+
+/// The attribute with the digest of the file, and how it stands in the header: name, type, and the length of the digits (OpenEXR File
+/// Layout, "attribute layout").
+const DIGEST: &str = "catoptric_digest";
+const DIGEST_MARK: &[u8] = b"catoptric_digest\0string\0\x10\0\0\0";
 
 /// What an EXR file is made of.
 #[derive(Debug, Clone, Copy)]
@@ -109,6 +115,7 @@ pub fn write_exr(path: &Path, layers: &Layers<'_>) -> Result<(), OutputError> {
     // As UTF-8, whatever the mesh is called.
     let made_by = Text::from_bytes_unchecked(layers.made_by.as_bytes().into());
     attributes.other.insert(Text::from(MADE_BY), AttributeValue::Text(made_by));
+    attributes.other.insert(Text::from(DIGEST), AttributeValue::Text(Text::from(seal::BLANK)));
     let pixel = |at: Vec2<usize>| {
         let i = at.y() * width as usize + at.x();
         let ([r, g, b, a], p) = (layers.colour.rgba[i], layers.pixel(i));
@@ -134,7 +141,7 @@ pub fn write_exr(path: &Path, layers: &Layers<'_>) -> Result<(), OutputError> {
         .with_pixel_fn(pixel);
     let layer = Layer::new((width as usize, height as usize), attributes, Encoding::SMALL_LOSSLESS, channels);
     let image = Image::new(ImageAttributes::with_size((width as usize, height as usize)), layer);
-    write_whole(path, |out| image.write().to_buffered(out).map_err(plain))
+    write_sealed(path, |out| image.write().to_buffered(out).map_err(plain), |file| seal::write(file, DIGEST_MARK))
 }
 
 /// What the system said, where it is the system's fault.
@@ -148,17 +155,19 @@ fn plain(error: Error) -> std::io::Error {
 /// The attribute of an EXR file that says how it was made; `None` where it has none.
 ///
 /// # Errors
-/// The file cannot be read, is no EXR, or ends too early.
-pub fn read_exr_made_by(file: impl BufRead + Seek) -> std::io::Result<Option<String>> {
-    let reader = ::exr::block::read(file, false).map_err(plain)?;
+/// The file cannot be read, is no EXR, or does not prove that it is whole by the digest that [`write_exr`] puts into it.
+pub fn read_exr_made_by(mut file: impl BufRead + Seek) -> std::io::Result<Option<String>> {
+    let is_proved = seal::prove(&mut file, DIGEST_MARK)?;
+    file.rewind()?;
+    let reader = ::exr::block::read(&mut file, false).map_err(plain)?;
     let found = reader.headers().iter().find_map(|header| header.own_attributes.other.get(MADE_BY.as_bytes()));
     let made_by = match found {
         Some(AttributeValue::Text(text)) => String::from_utf8(text.as_slice().to_vec()).ok(),
         _ => None,
     };
-    // Read, but not unpacked.
-    for chunk in reader.all_chunks(false).map_err(plain)? {
-        chunk.map_err(plain)?;
+    // Others have no digest, and nothing of theirs is proved.
+    match made_by {
+        Some(_) if !is_proved => Err(std::io::Error::other("it has no digest that proves it whole")),
+        made_by => Ok(made_by),
     }
-    Ok(made_by)
 }

@@ -6,6 +6,7 @@ mod heat;
 mod lines;
 mod marks;
 mod png;
+mod seal;
 mod sheet;
 mod whole;
 
@@ -16,6 +17,7 @@ pub use lines::{Drawn, Lines, LinesFormat, MM_PER_PIXEL, in_picture};
 pub use marks::{Canvas, Mark, Pen};
 pub use png::{png_bytes, read_png_made_by, write_png};
 pub use sheet::{Panel, draw_legend, sheet};
+pub(crate) use whole::Unfinished;
 pub use whole::{OutputError, WriteSeek, check_writable, discard_unfinished, write_whole};
 
 /// Keyword of the PNG text and name of the EXR attribute that say how a picture was made.

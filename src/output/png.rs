@@ -35,20 +35,59 @@ fn plain(error: png::EncodingError) -> std::io::Error {
     }
 }
 
-/// The text of a PNG file that says how it was made; `None` where it has none.
+/// The text of a PNG file that says how it was made; `None` where it has none. All of the file is read: its checksums must be right, and
+/// nothing may come after its end.
 ///
 /// # Errors
-/// The file cannot be read, is no PNG, or ends too early.
+/// The file cannot be read, is no PNG, ends too early, or bytes of it have changed.
 pub fn read_png_made_by(mut file: impl BufRead + Seek) -> std::io::Result<Option<String>> {
-    /// The last chunk, which is always the same.
-    const END: [u8; 12] = *b"\0\0\0\0IEND\xaeB`\x82";
-    let reader = png::Decoder::new(&mut file).read_info()?;
+    let mut options = png::DecodeOptions::default();
+    // Otherwise texts are left out whose checksums are wrong.
+    options.set_skip_ancillary_crc_failures(false);
+    options.set_ignore_checksums(false);
+    let mut reader = png::Decoder::new_with_options(&mut file, options).read_info()?;
+    let size = reader.output_buffer_size().ok_or_else(|| std::io::Error::other("it is too large"))?;
+    reader.next_frame(&mut vec![0; size])?;
+    reader.finish()?;
     let texts = &reader.info().utf8_text;
     let made_by = texts.iter().find(|text| text.keyword == MADE_BY).and_then(|text| text.get_text().ok());
-    let mut end = [0; END.len()];
-    file.seek(SeekFrom::End(-(END.len() as i64)))?;
-    file.read_exact(&mut end)?;
-    if end == END { Ok(made_by) } else { Err(std::io::Error::other("it ends too early")) }
+    drop(reader);
+    prove_png(file)?;
+    Ok(made_by)
+}
+
+/// An error if the checksum of a chunk is wrong, or the file goes on after the last one: what a decoder passes over in the end chunk, and in
+/// chunks that it does not know.
+fn prove_png(mut file: impl BufRead + Seek) -> std::io::Result<()> {
+    let changed = || std::io::Error::other("a checksum says that bytes have changed");
+    file.seek(SeekFrom::Start(8))?;
+    loop {
+        let mut head = [0; 8];
+        file.read_exact(&mut head)?;
+        let [a, b, c, d, kind @ ..] = head;
+        let (size, mut sum) = (u64::from(u32::from_be_bytes([a, b, c, d])), crc32fast::Hasher::new());
+        sum.update(&kind);
+        let mut left = size;
+        while left > 0 {
+            let some = file.fill_buf()?;
+            let count = some.len().min(usize::try_from(left).unwrap_or(usize::MAX));
+            if count == 0 {
+                return Err(std::io::ErrorKind::UnexpectedEof.into());
+            }
+            sum.update(&some[..count]);
+            file.consume(count);
+            left -= count as u64;
+        }
+        let mut expected = [0; 4];
+        file.read_exact(&mut expected)?;
+        if sum.finalize() != u32::from_be_bytes(expected) {
+            return Err(changed());
+        }
+        if kind == *b"IEND" {
+            let is_end = size == 0 && file.fill_buf()?.is_empty();
+            return if is_end { Ok(()) } else { Err(changed()) };
+        }
+    }
 }
 
 /// An opaque picture as the bytes of a PNG file: as small as they come, with a palette where 256 colours are enough.

@@ -1,8 +1,10 @@
 //! Whole files: written beside their destination under another name, then renamed over it.
 
+use std::fs::File;
 use std::io::{BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
 /// Why a file was not written. Whatever stood at the path before still stands there.
 #[derive(Debug, thiserror::Error)]
@@ -35,8 +37,24 @@ fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
+/// How names of files begin and end that are being written.
+const PREFIX: &str = ".catoptric-";
+const SUFFIX: &str = ".part";
+/// Age from which such a file that nobody has locked is left over. It is locked as soon as it is made, so any age would do that is more than a
+/// moment.
+const LEFT_OVER: Duration = Duration::from_secs(60);
+
 /// Keeps a file among the unfinished ones while it lives.
-struct Unfinished(PathBuf);
+#[derive(Debug)]
+pub(crate) struct Unfinished(PathBuf);
+
+impl Unfinished {
+    /// Notes a file that is to be removed where the process is stopped.
+    pub fn note(path: &Path) -> Unfinished {
+        unfinished().push(path.to_owned());
+        Unfinished(path.to_owned())
+    }
+}
 
 impl Drop for Unfinished {
     fn drop(&mut self) {
@@ -49,6 +67,8 @@ fn begin(path: &Path) -> std::io::Result<(tempfile::NamedTempFile, Unfinished)> 
     // Locked until it is noted, so that no file is there that is not.
     let mut unfinished = unfinished();
     let file = beside(path)?;
+    // While it is written it is locked: a file that is not is left over ([`discard_left_over`]). Some file systems know no locks.
+    let _ = file.as_file().try_lock();
     unfinished.push(file.path().to_owned());
     let noted = Unfinished(file.path().to_owned());
     Ok((file, noted))
@@ -80,7 +100,7 @@ fn beside(path: &Path) -> std::io::Result<tempfile::NamedTempFile> {
         return Err(std::io::Error::other(format!("the folder {} does not exist", folder.display())));
     }
     let mut file = tempfile::Builder::new();
-    file.prefix(".catoptric-").suffix(".part");
+    file.prefix(PREFIX).suffix(SUFFIX);
     // The usual rights of a new file: a temporary one is private otherwise.
     #[cfg(unix)]
     file.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
@@ -102,7 +122,27 @@ pub fn check_writable(path: &Path) -> Result<(), OutputError> {
     if is_special(path) {
         return Ok(());
     }
-    begin(path).map(drop).map_err(|source| OutputError { path: path.to_owned(), source })
+    begin(path).map(drop).map_err(|source| OutputError { path: path.to_owned(), source })?;
+    discard_left_over(folder_of(path));
+    Ok(())
+}
+
+/// Removes what processes that were killed have left of files that they were writing. What cannot be removed stays.
+fn discard_left_over(folder: &Path) {
+    let Ok(entries) = std::fs::read_dir(folder) else { return };
+    for entry in entries.flatten() {
+        let name = entry.file_name();
+        let is_ours = name.to_str().is_some_and(|name| name.starts_with(PREFIX) && name.ends_with(SUFFIX));
+        let is_old = || {
+            entry
+                .metadata()
+                .and_then(|data| data.modified())
+                .is_ok_and(|time| time.elapsed().is_ok_and(|age| age > LEFT_OVER))
+        };
+        if is_ours && is_old() && File::open(entry.path()).is_ok_and(|file| file.try_lock().is_ok()) {
+            let _ = std::fs::remove_file(entry.path());
+        }
+    }
 }
 
 /// Writes a file through `content`, whole or not at all.
@@ -112,6 +152,15 @@ pub fn check_writable(path: &Path) -> Result<(), OutputError> {
 pub fn write_whole(
     path: &Path,
     content: impl FnOnce(&mut dyn WriteSeek) -> std::io::Result<()>,
+) -> Result<(), OutputError> {
+    write_sealed(path, content, |_| Ok(()))
+}
+
+/// As [`write_whole`]; `seal` reads and changes the file once all of it is there. What is no file but a device or a pipe is not sealed.
+pub(super) fn write_sealed(
+    path: &Path,
+    content: impl FnOnce(&mut dyn WriteSeek) -> std::io::Result<()>,
+    seal: impl FnOnce(&File) -> std::io::Result<()>,
 ) -> Result<(), OutputError> {
     let write = || -> std::io::Result<()> {
         // A device or a pipe is written to, not replaced.
@@ -124,7 +173,9 @@ pub fn write_whole(
         // The file itself: errors of the temporary one would name it.
         let mut writer = BufWriter::new(file.as_file());
         content(&mut writer)?;
-        writer.into_inner().map_err(std::io::IntoInnerError::into_error)?.sync_all()?;
+        writer.into_inner().map_err(std::io::IntoInnerError::into_error)?;
+        seal(file.as_file())?;
+        file.as_file().sync_all()?;
         file.persist(path).map_err(|error| error.error)?;
         Ok(())
     };

@@ -2,6 +2,7 @@
 
 #[path = "../common/bodies.rs"]
 mod bodies;
+mod chords;
 #[path = "../common/mod.rs"]
 mod common;
 mod joints;

@@ -6,7 +6,7 @@ use catoptric::field::{Field, HighlightKind, Method, Scout};
 use catoptric::stam::LimitSurface;
 use glam::DVec3;
 
-const METHODS: [&str; 17] = [
+pub const METHODS: [&str; 17] = [
     "reflection",
     "curve:circle",
     "curve:ellipse=0.5",
@@ -27,7 +27,7 @@ const METHODS: [&str; 17] = [
 ];
 
 /// Values of the family that the camera sees, at most nine.
-fn family(scout: &Scout, field: &Field, camera: &catoptric::field::Camera) -> Vec<(i32, f64)> {
+pub fn family(scout: &Scout, field: &Field, camera: &catoptric::field::Camera) -> Vec<(i32, f64)> {
     let [low, high] = scout.range(field, camera);
     let spacing = field.light.spacing;
     let first = (low / spacing).ceil() as i32;

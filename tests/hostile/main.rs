@@ -2,6 +2,8 @@
 //! One line and exit code 2, and every file whole.
 
 #[cfg(unix)]
+mod memory;
+#[cfg(unix)]
 mod streams;
 mod truncated;
 mod values;

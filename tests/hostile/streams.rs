@@ -59,6 +59,39 @@ fn output_that_nobody_reads() {
     }
 }
 
+/// `catoptric ... >&-`: an answer that goes nowhere is an error, also where the program starts itself again to silence a layer of Mesa.
+#[test]
+fn output_that_is_closed() {
+    let folder = folder();
+    for args in talkers() {
+        for redirection in [">&-", "1</dev/null"] {
+            let message = refusal(&by_shell(&folder, redirection, &args));
+            assert!(message.contains("standard output is"), "{args:?} {redirection}: {message}");
+        }
+        // Whoever discards the answer on purpose has it: for writing alone, as shells do, and for both, as Python does.
+        for redirection in [">/dev/null", "1<>/dev/null"] {
+            let output = by_shell(&folder, redirection, &args);
+            assert!(output.status.success(), "{args:?} {redirection}");
+        }
+    }
+    let args = [String::from("info"), mesh("cube")];
+    let mut shell = Command::new("sh");
+    shell.args(["-c", "exec \"$0\" \"$@\" >&-", env!("CARGO_BIN_EXE_catoptric")]).args(&args);
+    shell.env_remove("NODEVICE_SELECT").env_remove("XDG_RUNTIME_DIR");
+    refusal(&shell.stdin(Stdio::null()).output().expect("a shell"));
+}
+
+/// A check that fails fails, whether or not its report is read to the end.
+#[test]
+fn verdicts_that_nobody_reads() {
+    let folder = folder();
+    let args = ["verify", &mesh("cube"), "--size=16x16", "--plant=point"];
+    let (reader, writer) = std::io::pipe().expect("a pipe");
+    drop(reader);
+    let output = folder.command(&args).stdout(writer).output().expect("the program starts");
+    assert_eq!(output.status.code(), Some(1), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
 fn by_shell(folder: &Folder, redirection: &str, args: &[String]) -> Output {
     let mut shell = Command::new("sh");
     shell.args(["-c", &format!("exec \"$0\" \"$@\" {redirection}"), env!("CARGO_BIN_EXE_catoptric")]);

@@ -65,13 +65,17 @@ impl Cutter<'_> {
         let mut is_cut = !first.is_within;
         for i in 1..=pieces {
             let end = node(i % count);
-            for crossing in self.crossings(curve.value, before, end) {
+            let mut was_within = before.is_within;
+            for node in self.cut_chord(curve.value, before, end) {
                 is_cut = true;
-                if crossing.is_within {
+                if node.is_within && !was_within {
                     // It comes in here.
                     parts.push(empty());
                 }
-                push(&mut parts, crossing.place, crossing.position);
+                if node.is_within || was_within {
+                    push(&mut parts, node.place, node.position);
+                }
+                was_within = node.is_within;
             }
             if end.is_within {
                 push(&mut parts, end.place, end.position);
@@ -90,11 +94,13 @@ impl Cutter<'_> {
                 tail.places.extend(&head.places[1..]);
             }
         }
-        parts
+        parts.into_iter().map(Curve::without_repeats).filter(|part| part.points.len() > 1).collect()
     }
 
-    /// Where the light ends between two points; `is_within`: what follows is within.
-    fn crossings(&self, value: f64, from: Node, to: Node) -> Vec<Node> {
+    /// Points between two if the light ends there: those where it does, of which `is_within` says whether what follows is within, and the
+    /// others that were looked at. A part of a chord is another chord, which may be farther from the contour than the tolerance; between
+    /// these they are an eighth as long.
+    fn cut_chord(&self, value: f64, from: Node, to: Node) -> Vec<Node> {
         let Some([a, b]) = self.on_one_face(from.place, to.place) else {
             // No face has both, which no tracer leaves us: the cut is as near as the chord is.
             let half = Node { position: 0.5 * (from.position + to.position), ..to };
@@ -105,7 +111,7 @@ impl Cutter<'_> {
             1.0 => to,
             t => self.between(value, a, b, t),
         };
-        let mut found = Vec::new();
+        let (mut found, mut is_cut) = (Vec::new(), false);
         let mut start = from;
         for k in 1..=LOOKS {
             let [mut low, mut high] = [k - 1, k].map(|k| f64::from(k) / f64::from(LOOKS));
@@ -122,10 +128,14 @@ impl Cutter<'_> {
                     }
                 }
                 found.push(last);
+                is_cut = true;
+            }
+            if k < LOOKS && end.position.is_finite() {
+                found.push(end);
             }
             start = end;
         }
-        found
+        if is_cut { found } else { Vec::new() }
     }
 
     /// The point of the contour across the place at `t` between two places of one face.

@@ -35,6 +35,15 @@ fn coordinate(x: f64) -> String {
     if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 
+/// Points without those that are the one before as they are written; a closed path does not come back to its first one either.
+fn without_repeats(mut points: Vec<String>, closed: bool) -> Vec<String> {
+    points.dedup();
+    while closed && points.len() > 1 && points.first() == points.last() {
+        points.pop();
+    }
+    points
+}
+
 /// A group a light, closed curves as closed paths. The view box is the picture: in pixels, or in millimetres of paper.
 pub(super) fn write(lines: &Lines<'_>, mm_per_pixel: Option<f64>, out: &mut dyn Write) -> Result<()> {
     let scale = mm_per_pixel.unwrap_or(1.0);
@@ -64,8 +73,10 @@ pub(super) fn write(lines: &Lines<'_>, mm_per_pixel: Option<f64>, out: &mut dyn 
                 let DVec2 { x, y } = point * scale;
                 format!("{},{}", coordinate(x), coordinate(y))
             });
-            let path = points.collect::<Vec<_>>().join(" ");
-            writeln!(out, r#"<path d="M{path}{}"/>"#, if part.closed { "Z" } else { "" })?;
+            let points = without_repeats(points.collect(), part.closed);
+            // A line along the line of sight is a point, which round caps make a dot.
+            let is_closed = part.closed || points.len() == 1;
+            writeln!(out, r#"<path d="M{}{}"/>"#, points.join(" "), if is_closed { "Z" } else { "" })?;
         }
         writeln!(out, "</g>")?;
     }
@@ -75,6 +86,16 @@ pub(super) fn write(lines: &Lines<'_>, mm_per_pixel: Option<f64>, out: &mut dyn 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn points_are_written_once() {
+        let of = |points: &[&str], closed: bool| {
+            without_repeats(points.iter().map(|&point| point.to_owned()).collect(), closed)
+        };
+        assert_eq!(of(&["0,0", "0,0", "1,0", "1,0", "0,0"], false), ["0,0", "1,0", "0,0"]);
+        assert_eq!(of(&["0,0", "0,0", "1,0", "1,0", "0,0"], true), ["0,0", "1,0"]);
+        assert_eq!(of(&["0,0", "0,0"], true), ["0,0"]);
+    }
 
     #[test]
     fn coordinates_are_short() {

@@ -39,15 +39,37 @@ fn array(items: impl Iterator<Item = String>) -> String {
     format!("[{}]", items.collect::<Vec<_>>().join(", "))
 }
 
-/// Whether USD can wrap the curve: a periodic linear curve has three points at least.
-fn wraps(curve: &Curve) -> bool {
-    curve.closed && curve.points.len() > 2
+/// A curve as it is written.
+struct Written<'a> {
+    curve: &'a Curve,
+    /// Its points, in order.
+    indices: Vec<usize>,
+    /// It is one of a periodic prim: those have three points at least.
+    wraps: bool,
 }
 
-/// The indices of a curve's points as they are written.
-fn indices(curve: &Curve) -> impl Iterator<Item = usize> + '_ {
-    let again = (curve.closed && !wraps(curve)).then_some(0);
-    (0..curve.points.len()).chain(again)
+impl Written<'_> {
+    /// Without points that are the one before in 32 bits; `None` where a single one is left, which no curve has.
+    fn new(curve: &Curve, middle: DVec3) -> Option<Written<'_>> {
+        let at = |k: usize| relative(curve.points[k], middle);
+        let mut indices: Vec<usize> = (0..curve.points.len()).collect();
+        indices.dedup_by_key(|&mut k| at(k).to_array());
+        while curve.closed && indices.len() > 1 && at(indices[0]) == at(indices[indices.len() - 1]) {
+            indices.pop();
+        }
+        if indices.len() < 2 {
+            return None;
+        }
+        let wraps = curve.closed && indices.len() > 2;
+        if curve.closed && !wraps {
+            indices.push(indices[0]);
+        }
+        Some(Written { curve, indices, wraps })
+    }
+}
+
+fn relative(point: DVec3, middle: DVec3) -> Vec3 {
+    (point - middle).as_vec3()
 }
 
 pub(super) fn write(lines: &Lines<'_>, meters_per_unit: f64, out: &mut dyn Write) -> Result<()> {
@@ -70,7 +92,8 @@ pub(super) fn write(lines: &Lines<'_>, meters_per_unit: f64, out: &mut dyn Write
         writeln!(out, "\n    def Scope \"{}\"\n    {{", group.name)?;
         writeln!(out, "        custom int catoptric:light = {}", group.light)?;
         writeln!(out, "        custom double catoptric:value = {}", shortest(group.value))?;
-        let (closed, open): (Vec<&Curve>, Vec<&Curve>) = group.curves.iter().partition(|curve| wraps(curve));
+        let written = group.curves.iter().filter_map(|curve| Written::new(curve, middle));
+        let (closed, open): (Vec<Written<'_>>, Vec<Written<'_>>) = written.partition(|curve| curve.wraps);
         for (name, wrap, curves) in [("open", "nonperiodic", open), ("closed", "periodic", closed)] {
             if !curves.is_empty() {
                 write_curves(name, wrap, &curves, middle, out)?;
@@ -81,20 +104,19 @@ pub(super) fn write(lines: &Lines<'_>, meters_per_unit: f64, out: &mut dyn Write
     writeln!(out, "}}")
 }
 
-fn write_curves(name: &str, wrap: &str, curves: &[&Curve], middle: DVec3, out: &mut dyn Write) -> Result<()> {
-    let relative = |point: DVec3| (point - middle).as_vec3();
-    let vertices = || curves.iter().flat_map(|curve| indices(curve).map(move |i| (*curve, i)));
-    let points = || vertices().map(|(curve, i)| relative(curve.points[i]));
+fn write_curves(name: &str, wrap: &str, curves: &[Written<'_>], middle: DVec3, out: &mut dyn Write) -> Result<()> {
+    let vertices = || curves.iter().flat_map(|written| written.indices.iter().map(|&i| (written.curve, i)));
+    let points = || vertices().map(|(curve, i)| relative(curve.points[i], middle));
     // Not empty: curves have points.
     let [low, high] = [points().reduce(Vec3::min), points().reduce(Vec3::max)].map(Option::unwrap_or_default);
     writeln!(out, "\n        def BasisCurves \"{name}\"\n        {{")?;
     writeln!(out, "            uniform token type = \"linear\"")?;
     writeln!(out, "            uniform token wrap = \"{wrap}\"")?;
-    let counts = array(curves.iter().map(|curve| indices(curve).count().to_string()));
+    let counts = array(curves.iter().map(|written| written.indices.len().to_string()));
     writeln!(out, "            int[] curveVertexCounts = {counts}")?;
     writeln!(out, "            float3[] extent = {}", array([low, high].into_iter().map(tuple)))?;
     writeln!(out, "            point3f[] points = {}", array(points().map(tuple)))?;
-    if curves.iter().all(|curve| curve.places.len() == curve.points.len()) {
+    if curves.iter().all(|Written { curve, .. }| curve.places.len() == curve.points.len()) {
         let places = || vertices().map(|(curve, i)| curve.places[i]);
         let vertex = "(\n                interpolation = \"vertex\"\n            )";
         let faces = array(places().map(|place| place.face.to_string()));
