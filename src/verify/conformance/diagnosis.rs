@@ -1,7 +1,7 @@
 //! The usual mistakes: what else failing answers could be the answers to.
 
 use super::{Answer, Judge};
-use crate::mesh::{Boundary, Creasing, SubdivMesh};
+use crate::mesh::{Boundary, Creasing, SubdivMesh, TriangleRule};
 use crate::patch::PatchKind;
 use crate::stam::{Jet, LimitSurface};
 use crate::verify::Sample;
@@ -318,6 +318,10 @@ fn other_rules(mesh: &SubdivMesh) -> Vec<(String, SubdivMesh)> {
             }
         };
         others.push((mistake.to_owned(), SubdivMesh { creasing, ..mesh.clone() }));
+    }
+    if mesh.triangles == TriangleRule::Smooth {
+        let mistake = "triangles are refined as other faces, the mesh asks for the smooth rule".to_owned();
+        others.push((mistake, SubdivMesh { triangles: TriangleRule::CatmullClark, ..mesh.clone() }));
     }
     if !mesh.holes.is_empty() {
         others.push(("holes are filled".to_owned(), SubdivMesh { holes: Vec::new(), ..mesh.clone() }));
