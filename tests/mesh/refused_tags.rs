@@ -144,5 +144,8 @@ fn a_rule_that_is_unknown() {
 
 #[test]
 fn smooth_triangles_which_would_change_the_surface() {
-    assert_eq!(refused("t smoothtriangles 0/0/1 smooth"), "smoothtriangles 'smooth' is not supported; use catmark");
+    assert_eq!(
+        refused("t smoothtriangles 0/0/1 round"),
+        "smoothtriangles 'round' is not supported; use catmark or smooth"
+    );
 }
