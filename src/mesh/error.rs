@@ -241,6 +241,8 @@ pub enum MeshError {
     AttributeMissing { at: Place, name: &'static str },
     #[error("{at}: {name} is not {expected}; give it the type that the schema says")]
     AttributeType { at: Place, name: String, expected: &'static str },
+    #[error("{at}: {name} is a spline, which is not read; give it time samples")]
+    AttributeSpline { at: Place, name: String },
     #[error("{at}: {name} has {value}; use 0 and above")]
     AttributeNegative { at: Place, name: &'static str, value: i32 },
     #[error("{at}: {name} has {found} values; write {expected}")]

@@ -151,7 +151,8 @@ pub enum TriangleRule {
     /// As on edges of any other face.
     #[default]
     CatmullClark,
-    /// By weights that leave surfaces of triangles smoother (Stam & Loop 2003). Other schemes take no notice.
+    /// By weights that leave surfaces of triangles smoother (OpenSubdiv's `TRI_SUB_SMOOTH`). They count in the first refinement alone,
+    /// behind which there are only quads, so limits are as exact as under the other rule. Other schemes take no notice.
     Smooth,
 }
 

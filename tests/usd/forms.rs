@@ -71,7 +71,9 @@ fn parts_that_are_missing_are_passed_over() {
     let arc = |what: &str| format!("def Scope \"l\" (\n    prepend references = {what}\n)\n{{\n}}\n");
     let there = prim("m", SQUARE);
     let mesh = accepted(&(there.clone() + &arc("@./gone.mtlx@</MaterialX>")));
-    assert_eq!(mesh.notes, ["passed over: /l refers to ./gone.mtlx, which is not there"]);
+    assert_eq!(mesh.notes.len(), 1);
+    let note = &mesh.notes[0];
+    assert!(note.starts_with("passed over: /l refers to /") && note.ends_with("gone.mtlx, which is not there"), "{note}");
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("mesh.usda");
     fs::write(folder.path().join("mat.mtlx"), "<?xml version=\"1.0\"?>\n<materialx version=\"1.38\"/>\n")

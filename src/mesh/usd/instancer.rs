@@ -10,11 +10,15 @@ use super::motion::Places;
 use super::prim::{self, Unplaced};
 use super::value::{Node, one_line};
 use super::{Found, Reader, State, ids, motion, xform};
+use crate::memory;
 use crate::mesh::MeshError;
 use crate::mesh::validate::check_limit;
 
 /// Most PointInstancers one in a prototype of the other.
 const DEEPEST: usize = 16;
+
+/// Bytes of the name of an instance, about.
+const A_NAME: usize = 64;
 
 /// A mesh of a prototype.
 #[derive(Clone)]
@@ -77,7 +81,12 @@ impl Reader<'_> {
                 Some(bodies) => bodies,
                 none => none.insert(self.prototype(&prototypes[prototype], state, found, depth)?),
             };
-            check_limit("meshes", all.len() + bodies.len(), &node.place())?;
+            let count = all.len() + bodies.len();
+            // Instancers in instancers multiply; now and then, because asking takes time.
+            if count >> 16 > all.len() >> 16 {
+                let bytes = count as u64 * (size_of::<Body>() + A_NAME) as u64;
+                memory::check(bytes).map_err(|needs| MeshError::Memory { at: node.place(), needs })?;
+            }
             all.extend(bodies.iter().map(|body| Body {
                 below: format!("[{number}]{}", body.below),
                 local: place * body.local,

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use openusd::pcp::CompositionDiagnostic;
 use openusd::sdf;
 
-use super::value::one_line;
+use super::value::{line_of, one_line};
 
 /// Types of prims that have a shape and are no meshes.
 const SHAPES: [&str; 19] = [
@@ -55,17 +55,38 @@ impl Passed {
 
 /// What references, payloads and sublayers lead to and cannot be read, in one clause: the first, and how many more.
 pub(super) fn missing(errors: &[CompositionDiagnostic]) -> Option<String> {
-    let (first, more) = errors.split_first()?;
-    let first = match first {
+    // A layer that is not there says more than a prim that is not in it.
+    let first = errors.iter().min_by_key(|error| rank(error))?;
+    let first: String = clause(first).chars().filter(|c| !c.is_control()).take(300).collect();
+    let more = errors.len() - 1;
+    Some(if more == 0 { first } else { format!("{first}; and {more} more of the kind") })
+}
+
+fn rank(error: &CompositionDiagnostic) -> usize {
+    match error {
+        CompositionDiagnostic::UnresolvedLayer { .. } | CompositionDiagnostic::UnresolvedSublayer { .. } => 0,
+        CompositionDiagnostic::MalformedLayer { .. } | CompositionDiagnostic::MalformedSublayer { .. } => 1,
+        _ => 2,
+    }
+}
+
+fn clause(error: &CompositionDiagnostic) -> String {
+    match error {
         CompositionDiagnostic::UnresolvedLayer { asset_path, site_path, .. } => {
             format!("{site_path} refers to {asset_path}, which is not there")
         }
         CompositionDiagnostic::MalformedLayer { asset_path, site_path, reason, .. } => {
-            let reason: Vec<&str> = reason.split_whitespace().collect();
-            format!("{site_path} refers to {asset_path}, which is not readable as USD: {}", reason.join(" "))
+            format!("{site_path} refers to {asset_path}, which is not readable as USD ({})", line_of(reason))
+        }
+        CompositionDiagnostic::UnresolvedSublayer { asset_path, introduced_by } => {
+            format!("{introduced_by} has the sublayer {asset_path}, which is not there")
+        }
+        CompositionDiagnostic::MalformedSublayer { asset_path, introduced_by, reason } => {
+            format!("{introduced_by} has the sublayer {asset_path}, which is not readable as USD ({})", line_of(reason))
+        }
+        CompositionDiagnostic::UnresolvedPrimPath { target_layer, prim_path, site_path, .. } => {
+            format!("{site_path} refers to {prim_path} of {target_layer}, which has no such prim")
         }
         other => one_line(other),
-    };
-    let first: String = first.chars().filter(|c| !c.is_control()).take(300).collect();
-    Some(if more.is_empty() { first } else { format!("{first}; and {} more of the kind", more.len()) })
+    }
 }

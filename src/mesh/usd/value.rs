@@ -54,6 +54,9 @@ impl Node<'_> {
 
     fn value_at(&self, name: &str, time: Option<f64>) -> Result<Option<Value>, MeshError> {
         let attribute = self.prim.attribute(name);
+        if time.is_some() && attribute.has_authored_metadata("spline").map_err(|error| self.unreadable(name, &error))? {
+            return Err(MeshError::AttributeSpline { at: self.place(), name: quote(name.as_bytes()) });
+        }
         let value = match time {
             Some(time) => attribute.get_at::<Value>(TimeCode::new(time)),
             None => match attribute.get::<Value>() {
@@ -185,6 +188,11 @@ pub(super) fn one_line(error: &dyn std::error::Error) -> String {
         }
         cause = error.source();
     }
+    line_of(&text)
+}
+
+/// A message of the reader as one line.
+pub(super) fn line_of(text: &str) -> String {
     let words: Vec<&str> = text.split_whitespace().collect();
     let line = without_excerpt(&words.join(" "));
     let cut: String = line.chars().filter(|c| !c.is_control()).take(200).collect();
