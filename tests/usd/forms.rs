@@ -73,7 +73,10 @@ fn parts_that_are_missing_are_passed_over() {
     let mesh = accepted(&(there.clone() + &arc("@./gone.mtlx@</MaterialX>")));
     assert_eq!(mesh.notes.len(), 1);
     let note = &mesh.notes[0];
-    assert!(note.starts_with("passed over: /l refers to /") && note.ends_with("gone.mtlx, which is not there"), "{note}");
+    assert!(
+        note.starts_with("passed over: /l refers to /") && note.ends_with("gone.mtlx, which is not there"),
+        "{note}"
+    );
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("mesh.usda");
     fs::write(folder.path().join("mat.mtlx"), "<?xml version=\"1.0\"?>\n<materialx version=\"1.38\"/>\n")
