@@ -442,6 +442,8 @@ impl<'a> Plain<'a> {
             true => !OTHER_TARGETS.iter().any(|start| name.text.starts_with(start.as_bytes())),
             false => name.text.starts_with(b"xformOp:") || ATTRIBUTES.iter().any(|needed| name.is_name(needed)),
         };
+        // What no mesh can use, whatever its name is.
+        let is_needed = is_needed && !["asset", "opaque", "pathExpression"].iter().any(|other| kind.is_name(other));
         let is_value = suffix.is_none_or(|suffix| ["timeSamples", "spline"].iter().any(|kind| suffix.is_name(kind)));
         let are_whole = ["int", "int64", "uint", "uint64", "uchar"].iter().any(|whole| kind.is_name(whole));
         let numbers = if are_whole { Numbers::Whole } else { Numbers::AsTheyAre };

@@ -43,6 +43,7 @@ fn strings_have_one_form() {
 fn what_is_not_needed_goes() {
     for gone in [
         "asset inputs:file = \"sky.png\"",
+        "asset points = \"points.png\"",
         "custom int x = \"y\" ( doc = \"\"\"a ) b\"\"\" )",
         "float3[] x.timeSamples = { 1: [(1, 2)], 2: <nothing> }",
         "token outputs:surface.connect = </a.b>",
