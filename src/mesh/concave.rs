@@ -130,10 +130,13 @@ fn cover(face: &[u32], points: &[DVec3]) -> Cover {
     let Some(corners) = corners.filter(|corners| corners.len() > 3 && corners.iter().all(|p| p.is_finite())) else {
         return Cover::Convex;
     };
+    let Some(outline) = projected(&corners) else {
+        // The parts of a bow tie may cancel each other out; what is a line has nothing to cover.
+        return if is_line(&corners) { Cover::Convex } else { Cover::Crossing };
+    };
     if polygon::is_convex(face, points) {
         return Cover::Convex;
     }
-    let Some(outline) = projected(&corners) else { return Cover::Crossing };
     if crosses(&outline) {
         return Cover::Crossing;
     }
@@ -144,6 +147,13 @@ fn cover(face: &[u32], points: &[DVec3]) -> Cover {
     };
     let pieces = joined(triangles, face.len(), is_convex);
     Cover::Pieces(pieces.into_iter().map(|piece| piece.into_iter().map(|corner| face[corner]).collect()).collect())
+}
+
+/// Whether all corners lie on one line, or at one point.
+fn is_line(corners: &[DVec3]) -> bool {
+    let away = |corner: &DVec3| *corner - corners[0];
+    let longest = corners.iter().map(away).fold(DVec3::ZERO, |a, b| if b.length() > a.length() { b } else { a });
+    corners.iter().map(away).all(|side| longest.cross(side).length() <= NO_AREA * longest.length_squared())
 }
 
 /// The outline as seen along its mean normal, counter-clockwise and of size 1; `None` where it has no area.
@@ -349,10 +359,12 @@ mod tests {
     fn faces_that_cross_themselves_stay() {
         let star: Vec<[f64; 2]> =
             (0..5).map(|k| (f64::from(k) * 0.8 * std::f64::consts::PI).sin_cos().into()).collect();
-        for outline in [&star[..], &[[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.2]]] {
+        let ties = [1.0, 1.2].map(|height| [[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, height]]);
+        for outline in [&star[..], &ties[0], &ties[1]] {
             let mut mesh = face(outline);
             assert_eq!(mesh.cut_concave_faces(), CutFaces { cut: None, crossing: Some((1, 0)) });
             assert_eq!(mesh, face(outline));
         }
+        assert_eq!(face(&[[0.0, 0.0], [1.0, 1.0], [2.0, 2.0], [3.0, 3.0]]).cut_concave_faces(), CutFaces::default());
     }
 }

@@ -47,7 +47,7 @@ fn stages_in_random_syntax_are_as_usd_core_reads_them() {
         }
     }
     println!("{compared:?}");
-    assert!(compared.meshes > 3000 && compared.instances > 1000 && compared.converted > 200, "{compared:?}");
+    assert!(compared.meshes > 2500 && compared.instances > 700 && compared.converted > 400, "{compared:?}");
     // Rounding of some twenty products; trigonometry of 32 bits between samples.
     assert!(compared.held <= 1e-13, "{:e}", compared.held);
     assert!(compared.moving <= 1e-6, "{:e}", compared.moving);

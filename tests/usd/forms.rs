@@ -62,7 +62,7 @@ fn operations_without_a_value_do_nothing() {
 fn lines_keep_their_numbers() {
     let text = "/* \n\n */ def Mesh 'm' ( # x\n doc = '''\n\n'''\n)\n{\n    int[] faceVertexCounts = [4, oops]\n}\n";
     let message = refusal(text);
-    assert!(message.starts_with("mesh.usda: not readable as USD (line 9: "), "{message}");
+    assert!(message.starts_with("mesh.usda: not readable as USD (line 10: "), "{message}");
 }
 
 /// Layers and other formats that cannot be read are passed over; what they lack is said in one line.
