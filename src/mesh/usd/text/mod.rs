@@ -289,9 +289,10 @@ impl<'a> Plain<'a> {
         if let Some(open) = self.take_mark(b'(') {
             self.write(open);
         }
-        while let Some(token) = self.take() {
+        let mut next = None;
+        while let Some(token) = next.take().or_else(|| self.take()) {
             match token.kind {
-                Kind::Name => self.metadatum(token, kept),
+                Kind::Name => next = self.metadatum(token, kept),
                 // A comment, and what stands between entries.
                 Kind::Text => self.drop(token),
                 Kind::Mark if token.is_mark(b';') || token.is_mark(b',') => self.drop(token),
@@ -305,8 +306,8 @@ impl<'a> Plain<'a> {
         }
     }
 
-    /// `prepend name = value`, from its first word on.
-    fn metadatum(&mut self, first: Token<'a>, kept: &[&str]) {
+    /// `prepend name = value`, from its first word on. Gives the first word of the next entry where it had to look at that.
+    fn metadatum(&mut self, first: Token<'a>, kept: &[&str]) -> Option<Token<'a>> {
         let mut head = vec![first];
         if LIST_OPERATIONS.iter().any(|operation| first.is_name(operation))
             && let Some(name) = self.peek().filter(|token| token.kind == Kind::Name)
@@ -314,7 +315,10 @@ impl<'a> Plain<'a> {
             self.take();
             head.push(name);
         }
-        let Some(equals) = self.take_mark(b'=') else { return self.write_all(&head) };
+        let Some(equals) = self.take_mark(b'=') else {
+            self.write_all(&head);
+            return None;
+        };
         let name = head[head.len() - 1];
         let is_kept = kept.iter().any(|kept| name.is_name(kept));
         if name.is_name("inactiveIds") && is_kept {
@@ -325,7 +329,16 @@ impl<'a> Plain<'a> {
         let fate = if is_kept { Fate::Kept(Numbers::AsTheyAre) } else { Fate::Dropped };
         self.settle_all(&head, fate);
         if is_kept && (name.is_name("active") || name.is_name("instanceable")) {
-            return self.truth();
+            self.truth();
+            return None;
+        }
+        // An entry may have no value, such as `symmetryFunction =`: then the next one follows.
+        if let Some(next) = self.take_name() {
+            if self.peek().is_some_and(|token| token.is_mark(b'=')) {
+                return Some(next);
+            }
+            self.settle(next, fate);
+            return None;
         }
         self.value(fate);
         // An arc: the prim in the layer, and an offset.
@@ -336,6 +349,7 @@ impl<'a> Plain<'a> {
         if self.peek().is_some_and(|token| token.is_mark(b'(')) {
             self.group(fate);
         }
+        None
     }
 
     /// A truth value: `true`, `no`, `1`, `"True"`.
@@ -360,6 +374,11 @@ impl<'a> Plain<'a> {
             Some(token) => {
                 self.take();
                 self.settle(token, fate);
+                // A word with a list, as of what edits an array.
+                if token.kind == Kind::Name && self.peek().is_some_and(|next| next.is_mark(b'[') || next.is_mark(b'{'))
+                {
+                    self.group(fate);
+                }
             }
             None => {}
         }

@@ -43,6 +43,7 @@ fn strings_have_one_form() {
 fn what_is_not_needed_goes() {
     for gone in [
         "asset inputs:file = \"sky.png\"",
+        "float[] weights = edit { [0] = 5. }",
         "asset points = \"points.png\"",
         "custom int x = \"y\" ( doc = \"\"\"a ) b\"\"\" )",
         "float3[] x.timeSamples = { 1: [(1, 2)], 2: <nothing> }",
@@ -53,6 +54,10 @@ fn what_is_not_needed_goes() {
     ] {
         assert_eq!(rewritten(gone), "", "{gone}");
     }
+    assert_eq!(
+        rewritten("def \"a\" (symmetryFunction =\n foo = bar; active = 1) {}"),
+        "def \"a\" ( active = true ) { }"
+    );
     let kept = "def \"a\" (\n \"comment\"\n doc = 'b'; active = no; customData = { int a = (1) }\n \
                 prepend references = @a@</b> (offset = .5)\n delete inactiveIds = [2])\n{\n}";
     assert_eq!(
