@@ -59,7 +59,7 @@ pub(super) fn missing(errors: &[CompositionDiagnostic]) -> Option<String> {
     let first = errors.iter().min_by_key(|error| rank(error))?;
     let first: String = clause(first).chars().filter(|c| !c.is_control()).take(300).collect();
     let more = errors.len() - 1;
-    Some(if more == 0 { first } else { format!("{first}; and {more} more of the kind") })
+    Some(if more == 0 { first } else { format!("{first}; and {more} more") })
 }
 
 fn rank(error: &CompositionDiagnostic) -> usize {
