@@ -322,11 +322,11 @@ mod tests {
             }
             let mut cut = whole.clone();
             assert_eq!(cut.cut_concave_faces(), CutFaces { cut: Some((1, 0)), crossing: None });
-            let parts = cut.faces().map(|(_, face)| area(face, &cut.points));
+            let parts: Vec<DVec3> = cut.faces().map(|(_, face)| area(face, &cut.points)).collect();
             let total = area(&whole.face_vertices, &whole.points);
-            let sum = parts.clone().sum::<DVec3>();
+            let sum = parts.iter().sum::<DVec3>();
             assert!(sum.distance(total) <= 1e-12 * total.length(), "{sum} {total}");
-            assert!(parts.clone().all(|part| part.dot(total) > 0.0));
+            assert!(parts.iter().all(|part| part.dot(total) > 0.0));
             assert!(cut.faces().all(|(_, face)| polygon::is_convex(face, &cut.points)));
             assert!(cut.face_count() <= pieces, "{} pieces", cut.face_count());
             assert_eq!(cut.holes, (0..cut.face_count() as u32).collect::<Vec<_>>());
