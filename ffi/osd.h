@@ -37,6 +37,8 @@ void osd_end_process(int32_t code);
 
 typedef enum osd_boundary { OSD_BOUNDARY_NONE, OSD_BOUNDARY_EDGE_ONLY, OSD_BOUNDARY_EDGE_AND_CORNER } osd_boundary;
 typedef enum osd_creasing { OSD_CREASING_UNIFORM, OSD_CREASING_CHAIKIN } osd_creasing;
+/* How CATMULL_CLARK refines triangles; the other schemes take no notice. */
+typedef enum osd_triangles { OSD_TRIANGLES_CATMULL_CLARK, OSD_TRIANGLES_SMOOTH } osd_triangles;
 
 /* Triangles alone under LOOP. */
 typedef enum osd_scheme { OSD_SCHEME_CATMULL_CLARK, OSD_SCHEME_LOOP, OSD_SCHEME_BILINEAR } osd_scheme;
@@ -57,6 +59,7 @@ typedef struct osd_mesh {
     osd_scheme scheme;
     osd_boundary boundary;
     osd_creasing creasing;
+    osd_triangles triangles;
 } osd_mesh;
 
 /* ---- topology refinement ----------------------------------------------------------------------------------------- */

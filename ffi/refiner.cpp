@@ -43,6 +43,10 @@ std::unique_ptr<Far::TopologyRefiner> make_refiner(osd_mesh const &mesh) {
     case OSD_CREASING_UNIFORM: rules.SetCreasingMethod(Sdc::Options::CREASE_UNIFORM); break;
     case OSD_CREASING_CHAIKIN: rules.SetCreasingMethod(Sdc::Options::CREASE_CHAIKIN); break;
     }
+    switch (mesh.triangles) {
+    case OSD_TRIANGLES_CATMULL_CLARK: rules.SetTriangleSubdivision(Sdc::Options::TRI_SUB_CATMARK); break;
+    case OSD_TRIANGLES_SMOOTH: rules.SetTriangleSubdivision(Sdc::Options::TRI_SUB_SMOOTH); break;
+    }
 
     Far::TopologyDescriptor topology;
     topology.numVertices = mesh.vertex_count;

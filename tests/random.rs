@@ -7,6 +7,7 @@ mod common;
 #[path = "common/random_mesh.rs"]
 mod random_mesh;
 
+use catoptric::mesh::{SubdivMesh, TriangleRule};
 use catoptric::osd::{Answer, Far, MAX_ISOLATION};
 use catoptric::patch::PatchKind;
 use catoptric::stam::LimitSurface;
@@ -81,33 +82,43 @@ fn parameters(depth: u32) -> Vec<[f64; 2]> {
 fn opensubdiv_agrees_at_dyadic_points() {
     let figures = run(|seed, figures| {
         let mesh = random_mesh::mesh(seed);
-        let surface = LimitSurface::new(&mesh).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
-        let far = Far::new(&mesh, MAX_ISOLATION).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
-        // The quadrants of an n-gon are quads of level 1: isolation 10 splits them nine times.
-        let [quad, quadrant] = [MAX_ISOLATION, MAX_ISOLATION - 1].map(parameters);
-        let grids = mesh
-            .face_sizes
-            .iter()
-            .flat_map(|&n| vec![if n == 4 { &quad } else { &quadrant }; if n == 4 { 1 } else { n as usize }]);
-        let samples: Vec<_> =
-            grids.enumerate().flat_map(|(ptex, grid)| grid.iter().map(move |&[u, v]| (ptex as u32, u, v))).collect();
-        let references = far.evaluate(&samples).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
-        for (&(ptex, u, v), reference) in samples.iter().zip(references) {
-            let Some((patch, jet)) = surface.evaluate_ptex(ptex, [u, v]) else {
-                assert_eq!(reference.answer, Answer::None, "seed {seed}: a hole for us alone");
-                continue;
-            };
-            assert_ne!(reference.answer, Answer::None, "seed {seed}: a hole for OpenSubdiv alone");
-            let kind = surface.kind(patch);
-            let exact = reference.answer == Answer::Regular;
-            let (_, local) = surface.locate(ptex, [u, v]).expect("it was evaluated");
-            let dart = kind == PatchKind::Dart && local == [0.0, 0.0] && !exact;
-            let error = jet.position.distance(reference.position) / surface.diagonal();
-            let what = if dart { "end cap at darts, position" } else { "position" };
-            note(figures, format!("{what}, {}", kind.name()), error, seed);
+        compare_with_far(&mesh, seed, "", figures);
+        if mesh.face_sizes.contains(&3) {
+            let smooth = SubdivMesh { triangles: TriangleRule::Smooth, ..mesh };
+            compare_with_far(&smooth, seed, " of smooth triangles", figures);
         }
     });
     assert_below(&figures, "position", 1e-13);
+    let are_some = figures.keys().any(|name| name.contains("smooth triangles"));
+    assert!(are_some || seeds().len() == 1, "no mesh has triangles");
+}
+
+fn compare_with_far(mesh: &SubdivMesh, seed: u64, rule: &str, figures: &mut Figures) {
+    let surface = LimitSurface::new(mesh).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
+    let far = Far::new(mesh, MAX_ISOLATION).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
+    // The quadrants of an n-gon are quads of level 1: isolation 10 splits them nine times.
+    let [quad, quadrant] = [MAX_ISOLATION, MAX_ISOLATION - 1].map(parameters);
+    let grids = mesh
+        .face_sizes
+        .iter()
+        .flat_map(|&n| vec![if n == 4 { &quad } else { &quadrant }; if n == 4 { 1 } else { n as usize }]);
+    let samples: Vec<_> =
+        grids.enumerate().flat_map(|(ptex, grid)| grid.iter().map(move |&[u, v]| (ptex as u32, u, v))).collect();
+    let references = far.evaluate(&samples).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
+    for (&(ptex, u, v), reference) in samples.iter().zip(references) {
+        let Some((patch, jet)) = surface.evaluate_ptex(ptex, [u, v]) else {
+            assert_eq!(reference.answer, Answer::None, "seed {seed}: a hole for us alone");
+            continue;
+        };
+        assert_ne!(reference.answer, Answer::None, "seed {seed}: a hole for OpenSubdiv alone");
+        let kind = surface.kind(patch);
+        let exact = reference.answer == Answer::Regular;
+        let (_, local) = surface.locate(ptex, [u, v]).expect("it was evaluated");
+        let dart = kind == PatchKind::Dart && local == [0.0, 0.0] && !exact;
+        let error = jet.position.distance(reference.position) / surface.diagonal();
+        let what = if dart { "end cap at darts, position" } else { "position" };
+        note(figures, format!("{what}{rule}, {}", kind.name()), error, seed);
+    }
 }
 
 /// Where two patches meet they have the same position, and the same normal unless the edge between them is sharp.

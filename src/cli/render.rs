@@ -18,7 +18,7 @@ use crate::output::{
     Heat, Layers, Scale, check_writable, draw_legend, heat, read_exr_made_by, read_png_made_by, write_exr, write_png,
 };
 use crate::rig::{CameraRig, FittedRig, PatternRig, Rig};
-use crate::stam::{LimitSurface, MovingSurface};
+use crate::stam::{LimitSurface, MoveError, MovingSurface};
 use clap::{Args, ValueEnum};
 use indicatif::ProgressBar;
 use std::fs::File;
@@ -328,8 +328,17 @@ impl Body {
 
     fn move_to(&mut self, mesh: SubdivMesh, time: Option<f64>) -> Result<(), Failure> {
         if let Surface::Moving(moving) = &mut self.surface {
-            let at = time.map_or_else(String::new, |time| format!("at time {time} "));
-            moving.move_to(&mesh).map_err(|error| Failure::Bad(format!("{}: {at}{error}", mesh.name)))?;
+            let moved = moving.move_to(&mesh).map(drop);
+            match moved {
+                // Prims that turn into their mirror images have their faces turned over, and some change their faces.
+                Err(MoveError::Topology(_)) if mesh.has_prims_of(&self.mesh) => {
+                    **moving = MovingSurface::new(&mesh).map_err(|error| Failure::of(&mesh, error))?;
+                }
+                moved => {
+                    let at = time.map_or_else(String::new, |time| format!("at time {time} "));
+                    moved.map_err(|error| Failure::Bad(format!("{}: {at}{error}", mesh.name)))?;
+                }
+            }
         }
         (self.digest, self.mesh) = (mesh_digest(&mesh), mesh);
         Ok(())

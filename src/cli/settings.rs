@@ -4,7 +4,7 @@ use super::render::RenderArgs;
 use crate::digest::{START, fnv1a};
 use crate::field::{Camera, Grid, Method, Palette, Pattern, Projection};
 use crate::gpu::View;
-use crate::mesh::{Boundary, Creasing, Scheme, SubdivMesh};
+use crate::mesh::{Boundary, Creasing, Scheme, SubdivMesh, TriangleRule};
 use crate::rig::{Attachment, Colours, FittedRig, PatternName};
 use clap::ValueEnum;
 use glam::DVec3;
@@ -225,7 +225,8 @@ pub(super) fn mesh_digest(mesh: &SubdivMesh) -> u64 {
         Scheme::Bilinear => 4,
         Scheme::None => 6,
     };
-    digest.bytes(&[boundary, scheme | u8::from(mesh.creasing == Creasing::Chaikin)]);
+    let triangles = u8::from(mesh.triangles == TriangleRule::Smooth) << 3;
+    digest.bytes(&[boundary, scheme | triangles | u8::from(mesh.creasing == Creasing::Chaikin)]);
     digest.0
 }
 

@@ -163,7 +163,7 @@ pub enum MeshError {
         "{at}: a face with {size} vertices, but the scheme loop takes triangles; triangulate it, or use catmullClark"
     )]
     NotTriangle { at: Place, size: usize },
-    #[error("{at}: a face that is concave or crosses itself under the scheme none; cut it into convex faces")]
+    #[error("{at}: a face that is concave under the scheme none; cut it into convex faces")]
     FaceConcave { at: Place },
     #[error("{at}: a face with vertex {vertex}, but the mesh has only {first} to {last}; correct it")]
     VertexOutOfRange { at: Place, vertex: u64, first: u64, last: u64 },
@@ -224,8 +224,10 @@ pub enum MeshError {
         "{at}: the arcs of {prim} lead back to it; break the circle of its inherits, specializes, references and payloads"
     )]
     ArcsInCircle { at: Place, prim: String },
-    #[error("{at}: the stage has no Mesh prim that is visible and of purpose default or render; give one that has")]
-    NoMeshPrims { at: Place },
+    #[error(
+        "{at}: the stage has no Mesh prim that is visible and of purpose default or render{passed}; give one that has"
+    )]
+    NoMeshPrims { at: Place, passed: String },
     #[error("{at}: an OBJ has no prims; leave --prim out, or give a USD file")]
     NoPrims { at: Place },
     #[error(
@@ -239,6 +241,8 @@ pub enum MeshError {
     AttributeMissing { at: Place, name: &'static str },
     #[error("{at}: {name} is not {expected}; give it the type that the schema says")]
     AttributeType { at: Place, name: String, expected: &'static str },
+    #[error("{at}: {name} is a spline, which is not read; give it time samples")]
+    AttributeSpline { at: Place, name: String },
     #[error("{at}: {name} has {value}; use 0 and above")]
     AttributeNegative { at: Place, name: &'static str, value: i32 },
     #[error("{at}: {name} has {found} values; write {expected}")]
@@ -247,21 +251,12 @@ pub enum MeshError {
     CreaseTooShort { at: Place, length: u32 },
     #[error("{at}: subdivisionScheme '{scheme}' is none of USD's; use catmullClark, loop, bilinear or none")]
     SchemeUnknown { at: Place, scheme: String },
-    #[error("{at}: subdivisionScheme {found}, but other meshes have {first}, and a scene has one; make them agree")]
-    SchemeMixed { at: Place, first: &'static str, found: &'static str },
     #[error("{at}: xformOpOrder has {op}, which is no transform of USD; correct it")]
     TransformUnknown { at: Place, op: String },
-    #[error("{at}: xformOpOrder has {op}, which has no value; give it one or leave it out")]
-    TransformMissing { at: Place, op: String },
     #[error("{at}: a PointInstancer without {name}; give it prototypes, protoIndices and positions")]
     InstancerIncomplete { at: Place, name: &'static str },
-    #[error("{at}: a PointInstancer in a prototype, which is not read; make its instances prims")]
-    InstancerUnsupported { at: Place },
+    #[error("{at}: a PointInstancer that is in a prototype of its own; give it other prototypes")]
+    InstancerInCircle { at: Place },
     #[error("{at}: protoIndices has {index}, but the number of prototypes is {count}; correct it")]
     PrototypeUnknown { at: Place, index: u32, count: usize },
-    #[error(
-        "{at}: interpolateBoundary is none and that of other meshes is not, but a scene has one rule; \
-         make them agree"
-    )]
-    BoundaryMixed { at: Place },
 }

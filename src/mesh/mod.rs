@@ -7,7 +7,9 @@
 //! [`Boundary::default`] is `EdgeAndCorner`, as in USD. An **OBJ file** without an `interpolateboundary` tag gets `EdgeOnly`
 //! instead, because that is what OpenSubdiv's own regression suite does with such a shape.
 
+mod concave;
 mod error;
+mod linear;
 mod lines;
 mod measure;
 mod obj;
@@ -27,6 +29,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::memory;
 
+pub use concave::CutFaces;
 pub use error::{MeshError, Place, Spot};
 pub use originals::Originals;
 pub use parts::{Part, PtexParts, Repeat};
@@ -143,6 +146,17 @@ pub enum Creasing {
     Chaikin,
 }
 
+/// How Catmull and Clark's scheme places the vertices on edges of triangles (OpenSubdiv's `TriangleSubdivision`).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum TriangleRule {
+    /// As on edges of any other face.
+    #[default]
+    CatmullClark,
+    /// By weights that leave surfaces of triangles smoother (OpenSubdiv's `TRI_SUB_SMOOTH`). They count in the first refinement alone,
+    /// behind which there are only quads, so limits are as exact as under the other rule. Other schemes take no notice.
+    Smooth,
+}
+
 /// An edge with a sharpness: 0 is smooth, 10 and above infinitely sharp.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Crease {
@@ -187,6 +201,8 @@ pub struct SubdivMesh {
     pub boundary: Boundary,
     /// Decay of finite sharpness.
     pub creasing: Creasing,
+    /// Rule for triangles.
+    pub triangles: TriangleRule,
     /// Direction that points up, where the file says it (USD does); views are fitted to it.
     pub up: Option<DVec3>,
     /// Metres that a unit is long, where the file says it (USD does). Nothing is converted: results are in the file's units.

@@ -54,6 +54,7 @@ pub(super) fn parse(text: &[u8], source: &str, name: &str) -> Result<SubdivMesh,
     while let Some((number, line)) = lines.next() {
         reader.line(number, line)?;
     }
+    reader.cut_concave_faces();
     let source = Source { name: source, lines: Some(&reader.lines), first_vertex: 1 };
     check(&reader.mesh, &source)?;
     Ok(reader.mesh)
@@ -79,6 +80,21 @@ impl Reader<'_> {
             }
             _ => Ok(()),
         }
+    }
+
+    /// Cuts concave faces under the scheme none; pieces are of the line of their face.
+    fn cut_concave_faces(&mut self) {
+        if self.mesh.face_sizes.iter().map(|&size| u64::from(size)).sum::<u64>() != self.mesh.face_vertices.len() as u64
+        {
+            return;
+        }
+        let lines = self.lines.faces.clone();
+        let faces = &mut self.lines.faces;
+        let cut = self.mesh.cut_concave_faces_with(|face, pieces| {
+            let line = faces[face];
+            faces.splice(face..=face, std::iter::repeat_n(line, pieces));
+        });
+        self.mesh.notes.extend(cut.notes(|face| format!("line {}", lines[face])));
     }
 
     fn place(&self, number: u32) -> Place {

@@ -49,6 +49,7 @@ impl SubdivMesh {
             scheme: self.scheme,
             boundary: self.boundary,
             creasing: self.creasing,
+            triangles: self.triangles,
             ..SubdivMesh::default()
         };
         let mut index = Vec::with_capacity(self.parts.len());

@@ -55,6 +55,12 @@ impl<'a> PtexParts<'a> {
 }
 
 impl SubdivMesh {
+    /// Whether both are read from the same prims of a stage.
+    pub(crate) fn has_prims_of(&self, other: &Self) -> bool {
+        let names = |mesh: &Self| mesh.parts.iter().map(|part| part.name.clone()).collect::<Vec<_>>();
+        !self.parts.is_empty() && names(self) == names(other)
+    }
+
     /// Which part each ptex face is of.
     pub fn ptex_parts(&self) -> PtexParts<'_> {
         let mut end = 0;

@@ -13,8 +13,9 @@ pub enum Scheme {
     /// Every face stays where it is: a quad is the bilinear patch of its corners, any other face is cut into quads at the
     /// middles of its edges and the mean of its corners. Sharpness changes nothing.
     Bilinear,
-    /// Polygons as they are, no subdivision. A convex face in a plane is covered exactly as it is; one that is not in a
-    /// plane is the surface that [`Bilinear`](Self::Bilinear) makes of it; a concave one is refused.
+    /// Polygons as they are, no subdivision. A convex face in a plane is covered exactly as it is; one that is not in a plane,
+    /// or crosses itself, is the surface that [`Bilinear`](Self::Bilinear) makes of it. A concave one is refused; readers cut it into
+    /// convex pieces first ([`SubdivMesh::cut_concave_faces`]).
     None,
 }
 

@@ -11,7 +11,7 @@
 //! | `interpolateboundary` | 0 none, 1 edge and corner, 2 edge only |
 //! | `creasemethod` | `normal` (or `uniform`), `chaikin` |
 //! | `scheme` | `catmullClark`, `loop`, `bilinear`, `none`; ours: OpenSubdiv's files leave the scheme to their name |
-//! | `smoothtriangles` | `catmark`; `smooth` would change the surface and is refused |
+//! | `smoothtriangles` | `catmark`, `smooth`: the rule for triangles under Catmull and Clark's scheme |
 //! | `facevaryinginterpolateboundary`, `facevaryingpropagatecorners` | ignored: there is no face-varying data here |
 //!
 //! OpenSubdiv's own shape reader takes the vertices of a `crease` in pairs, RenderMan (which defined the tag) as a
@@ -20,7 +20,7 @@
 
 use super::error::{MeshError, Place, quote};
 use super::validate::Lines;
-use super::{Boundary, Corner, Crease, Creasing, Scheme, SubdivMesh};
+use super::{Boundary, Corner, Crease, Creasing, Scheme, SubdivMesh, TriangleRule};
 
 /// The values of one tag, by kind, still as text.
 struct Values<'a> {
@@ -63,7 +63,7 @@ pub(super) fn read<F: Fn() -> Place>(
         b"interpolateboundary" => tag.boundary(mesh),
         b"creasemethod" => tag.creasing(mesh),
         b"scheme" => tag.scheme(mesh),
-        b"smoothtriangles" => tag.triangles(),
+        b"smoothtriangles" => tag.triangles(mesh),
         b"facevaryinginterpolateboundary" | b"facevaryingpropagatecorners" => Ok(()),
         _ => Err(MeshError::UnknownTag { at: (tag.at)(), name: quote(name) }),
     }
@@ -157,12 +157,16 @@ impl<F: Fn() -> Place> Tag<'_, F> {
         Ok(())
     }
 
-    fn triangles(&self) -> Result<(), MeshError> {
-        match self.values.strings {
-            [b"catmark"] => Ok(()),
-            [other] => Err(self.refuse_value("smoothtriangles", other, "catmark")),
-            _ => self.expect(false, "smoothtriangles", "one string"),
-        }
+    fn triangles(&self, mesh: &mut SubdivMesh) -> Result<(), MeshError> {
+        let Values { ints: [], floats: [], strings: [value] } = self.values else {
+            return self.expect(false, "smoothtriangles", "one string");
+        };
+        mesh.triangles = match *value {
+            b"catmark" => TriangleRule::CatmullClark,
+            b"smooth" => TriangleRule::Smooth,
+            _ => return Err(self.refuse_value("smoothtriangles", value, "catmark or smooth")),
+        };
+        Ok(())
     }
 
     fn expect_sharpness(&self, name: &'static str, sharpened: usize, expected: &'static str) -> Result<(), MeshError> {

@@ -11,7 +11,6 @@
 //! * The same edge or vertex sharpened more than once: the last one counts.
 
 use super::error::{MeshError, Place, Spot};
-use super::polygon;
 use super::{Scheme, SubdivMesh};
 
 /// Largest number of edges at a vertex, and of vertices in a face: OpenSubdiv's `Vtr::VALENCE_LIMIT` (16-bit local
@@ -257,8 +256,8 @@ fn check_scheme(mesh: &SubdivMesh, source: &Source<'_>) -> Result<(), MeshError>
             Some(face) => Err(MeshError::NotTriangle { at: at(face), size: mesh.face_sizes[face] as usize }),
             None => Ok(()),
         },
-        Scheme::None => match mesh.faces().find(|(_, face)| !polygon::is_convex(face, &mesh.points)) {
-            Some((face, _)) => Err(MeshError::FaceConcave { at: at(face) }),
+        Scheme::None => match mesh.first_concave_face() {
+            Some(face) => Err(MeshError::FaceConcave { at: at(face) }),
             None => Ok(()),
         },
     }

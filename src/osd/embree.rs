@@ -1,7 +1,7 @@
 //! Embree 3.13, a peer of benchmarks (cargo feature `peers`).
 
 use super::{Descriptor, Error, check, int, raw};
-use crate::mesh::{Creasing, Scheme, SubdivMesh};
+use crate::mesh::{Creasing, Scheme, SubdivMesh, TriangleRule};
 use std::ptr::NonNull;
 
 /// Samples that go to Embree at a time.
@@ -83,7 +83,9 @@ impl EmbreeSubdivision {
         let mut faces = vec![0usize; mesh.points.len()];
         mesh.face_vertices.iter().for_each(|&vertex| faces[vertex as usize] += 1);
         let fits = mesh.face_sizes.iter().all(|&size| size <= MOST_EDGES) && faces.iter().all(|&n| n <= MOST_FACES);
-        fits && mesh.scheme == Scheme::CatmullClark && mesh.creasing == Creasing::Uniform
+        fits && mesh.scheme == Scheme::CatmullClark
+            && mesh.creasing == Creasing::Uniform
+            && mesh.triangles == TriangleRule::CatmullClark
     }
 
     /// Hands the mesh to Embree.

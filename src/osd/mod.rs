@@ -26,7 +26,7 @@ pub use refiner::{Level, LimitMasks, NO_TWIN, Refiner, Rule};
 pub use stencils::{LimitStencils, Stencil};
 pub use version::{Version, version};
 
-use crate::mesh::{Boundary, Creasing, MeshError, Scheme, SubdivMesh};
+use crate::mesh::{Boundary, Creasing, MeshError, Scheme, SubdivMesh, TriangleRule};
 use std::ffi::CStr;
 
 /// Deepest isolation of OpenSubdiv (3.5.0 to 3.6.0): beyond it, patches are silently wrong or memory is corrupted.
@@ -80,6 +80,7 @@ struct Descriptor {
     scheme: raw::osd_scheme,
     boundary: raw::osd_boundary,
     creasing: raw::osd_creasing,
+    triangles: raw::osd_triangles,
 }
 
 impl Descriptor {
@@ -109,6 +110,10 @@ impl Descriptor {
                 Creasing::Uniform => raw::OSD_CREASING_UNIFORM,
                 Creasing::Chaikin => raw::OSD_CREASING_CHAIKIN,
             },
+            triangles: match mesh.triangles {
+                TriangleRule::CatmullClark => raw::OSD_TRIANGLES_CATMULL_CLARK,
+                TriangleRule::Smooth => raw::OSD_TRIANGLES_SMOOTH,
+            },
         })
     }
 
@@ -130,6 +135,7 @@ impl Descriptor {
             scheme: self.scheme,
             boundary: self.boundary,
             creasing: self.creasing,
+            triangles: self.triangles,
         }
     }
 }

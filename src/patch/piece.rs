@@ -160,6 +160,7 @@ impl<'a> Division<'a> {
             scheme: self.mesh.scheme,
             boundary: self.mesh.boundary,
             creasing: self.mesh.creasing,
+            triangles: self.mesh.triangles,
             ..SubdivMesh::default()
         };
         for (&face, own) in faces.iter().zip(0..) {

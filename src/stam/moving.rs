@@ -66,7 +66,7 @@ impl MovingSurface {
     /// What makes it another surface, as the subject of a sentence.
     fn difference(&self, mesh: &SubdivMesh) -> Option<&'static str> {
         let topology = &self.topology;
-        let rules = |mesh: &SubdivMesh| (mesh.scheme, mesh.boundary, mesh.creasing);
+        let rules = |mesh: &SubdivMesh| (mesh.scheme, mesh.boundary, mesh.creasing, mesh.triangles);
         let same = [
             (mesh.points.len() == self.vertices, "numbers of points"),
             (mesh.face_sizes == topology.face_sizes && mesh.face_vertices == topology.face_vertices, "faces"),

@@ -143,6 +143,9 @@ fn a_rule_that_is_unknown() {
 }
 
 #[test]
-fn smooth_triangles_which_would_change_the_surface() {
-    assert_eq!(refused("t smoothtriangles 0/0/1 smooth"), "smoothtriangles 'smooth' is not supported; use catmark");
+fn rules_for_triangles_that_there_are_not() {
+    assert_eq!(
+        refused("t smoothtriangles 0/0/1 round"),
+        "smoothtriangles 'round' is not supported; use catmark or smooth"
+    );
 }

@@ -29,7 +29,7 @@ fn faces_that_a_scheme_does_not_take_are_named() {
     );
     assert_eq!(
         refusal(&quad(Scheme::None, true)),
-        "quad, face 0: a face that is concave or crosses itself under the scheme none; cut it into convex faces"
+        "quad, face 0: a face that is concave under the scheme none; cut it into convex faces"
     );
     for (scheme, dent) in [(Scheme::None, false), (Scheme::Bilinear, true), (Scheme::CatmullClark, true)] {
         assert!(quad(scheme, dent).validate().is_ok(), "{scheme:?}");

@@ -45,6 +45,8 @@ pub struct Prim {
     pub interpolate_boundary: String,
     pub orientation: String,
     pub subdivision_scheme: String,
+    #[serde(default)]
+    pub triangle_subdivision_rule: String,
 }
 
 pub type DVec3Json = [f64; 3];
@@ -149,6 +151,12 @@ pub fn read_prim(path: &Path, prim: &str) -> SubdivMesh {
 /// Asserts that all but the points is that of the prim, to the last bit.
 pub fn assert_attributes(mesh: &SubdivMesh, prim: &Prim, what: &str) {
     assert_eq!(prim.subdivision_scheme, "catmullClark");
+    assert_features(mesh, prim, what);
+}
+
+/// As [`assert_attributes`], of any scheme.
+pub fn assert_features(mesh: &SubdivMesh, prim: &Prim, what: &str) {
+    assert_eq!(mesh.scheme.name(), prim.subdivision_scheme, "{what}");
     assert_eq!(mesh.face_sizes, prim.face_vertex_counts, "{what}");
     assert_eq!(mesh.face_vertices, prim.faces().concat(), "{what}");
     assert_eq!(mesh.creases.iter().map(|c| (c.vertices, c.sharpness)).collect::<Vec<_>>(), prim.creases(), "{what}");

@@ -244,3 +244,28 @@ fn instances_are_chosen_by_number() {
     // Instance 3 is invisible, and prototypes are not shown by themselves.
     assert!(names("/world/scatter[3]").is_err() && names("/world/scatter/stone").is_err());
 }
+
+/// `inactiveIds` of all layers together, in stages of text and of crates, and through instances.
+#[test]
+fn inactive_ids_are_composed() {
+    let to = tempfile::tempdir().expect("a temporary folder");
+    let ids = "int64[] ids = [5, 7, 9, 11]\nint64[] invisibleIds = [11]\nint[] protoIndices = [0, 0, 0, 0]\n\
+               point3f[] positions = [(0, 0, 0), (4, 0, 0), (8, 0, 0), (12, 0, 0)]\nrel prototypes = </W/I/P>\n";
+    let lists = "prepend inactiveIds = [7]\nappend inactiveIds = [9.]";
+    let instancer = format!("def PointInstancer \"I\" (\n{lists}\n)\n{{\n{ids}{}}}\n", prim("P", SQUARE));
+    let layer = to.path().join("layer.usda");
+    let text = format!("{HEADER}(\n    defaultPrim = \"W\"\n)\ndef Xform \"W\"\n{{\n{instancer}}}\n");
+    fs::write(&layer, text).expect("a file");
+    let over = "over \"I\" (\n    delete inactiveIds = [9]\n)\n{\n}\n";
+    let stage = format!(
+        "{HEADER}def \"A\" (\n    instanceable = 1\n    references = @./layer.usda@\n)\n{{\n}}\n\
+         def \"B\" (\n    references = @./layer.usda@\n)\n{{\n{over}}}\n\
+         def \"C\" (\n    references = @./layer.usda@\n)\n{{\n{}}}\n",
+        over.replace("delete inactiveIds = [9]", "inactiveIds = [5]")
+    );
+    let path = to.path().join("stage.usda");
+    fs::write(&path, stage).expect("a file");
+    let mesh = mesh::read(&path).expect("a scene");
+    let names: Vec<&str> = mesh.parts.iter().map(|part| part.name.as_str()).collect();
+    assert_eq!(names, ["/A/I[0]", "/B/I[0]", "/B/I[2]", "/C/I[1]", "/C/I[2]"]);
+}

@@ -2,17 +2,23 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+#[path = "../common/rng.rs"]
+mod rng;
 
 mod blender;
 mod corrupt;
+mod differential;
 mod fixtures;
+mod forms;
 mod instances;
+mod mixture;
 mod prims;
 mod program;
 mod refused;
 mod schema;
 mod time;
 mod transforms;
+mod trials;
 mod twins;
 
 use std::fs;

@@ -195,3 +195,29 @@ fn animations_are_their_pictures_one_by_one() {
         "mesh.0003: at time 3 sharp vertices differ, so it is another surface; give frames of one topology"
     );
 }
+
+/// A prim that turns into its mirror image turns its faces over: each frame is the picture of its own stage.
+#[test]
+fn prims_may_turn_into_their_mirror_images() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let folder = folder.path();
+    let mirror = "float3 xformOp:scale.timeSamples = { 1: (1, 1, 1), 2: (-1, 1, 1) }\nuniform token[] xformOpOrder = [\"xformOp:scale\"]\n";
+    let bent = SQUARE.replace("(1, 1, 0)", "(1, 1, 0.5)");
+    fs::write(folder.join("mesh.usda"), HEADER.to_owned() + &prim("m", &format!("{bent}{mirror}"))).expect("a file");
+    let fixed =
+        ["--size", "48x48", "--eye", "0,-6,8", "--target", "0,0,0", "--up", "0,0,1", "--light-center", "0,0,20"];
+    let light = ["--light-normal", "0,0,-1", "--light-lines", "1,0,0", "--light-spacing", "4"];
+    let render = |args: &[&str]| {
+        let told = run(folder, &[&["render", "mesh.usda"], args, &fixed, &light].concat());
+        assert!(told.status.success(), "{}", String::from_utf8_lossy(&told.stderr));
+    };
+    render(&["-o", "series.png", "--time", "1:2"]);
+    let pixels = |name: &str| image::open(folder.join(name)).expect("a picture").to_rgba8();
+    for frame in ["1", "2"] {
+        render(&["-o", "alone.png", "--time", frame]);
+        assert_eq!(pixels(&format!("series_000{frame}.png")), pixels("alone.png"), "frame {frame}");
+    }
+    assert_ne!(pixels("series_0001.png"), pixels("series_0002.png"));
+    let faces = |time| at(&folder.join("mesh.usda"), Some(time)).face_vertices;
+    assert_eq!([faces(1.0), faces(2.0)], [vec![0, 1, 2, 3], vec![0, 3, 2, 1]]);
+}

@@ -7,7 +7,7 @@ use adaptive::AdaptiveLevel;
 use super::args::InfoArgs;
 use super::{Failure, progress, refined, write_out};
 use crate::gpu;
-use crate::mesh::{Boundary, Creasing, Part, SubdivMesh};
+use crate::mesh::{Boundary, Creasing, Part, SubdivMesh, TriangleRule};
 use crate::osd::{INFINITE_SHARPNESS, Level, MAX_ISOLATION, Refiner, Rule};
 use crate::patch::PatchKind;
 use crate::stam::LimitSurface;
@@ -52,6 +52,7 @@ struct Info {
     scheme: &'static str,
     boundary: &'static str,
     creasing: &'static str,
+    triangles: &'static str,
     /// Patches by kind.
     patches: BTreeMap<&'static str, usize>,
     /// Patches that are stored: those of instances are those of what they repeat.
@@ -130,6 +131,10 @@ fn collect(mesh: &SubdivMesh, surface: &LimitSurface, control: &Level) -> Info {
         creasing: match mesh.creasing {
             Creasing::Uniform => "uniform",
             Creasing::Chaikin => "chaikin",
+        },
+        triangles: match mesh.triangles {
+            TriangleRule::CatmullClark => "catmull-clark",
+            TriangleRule::Smooth => "smooth",
         },
         ..Info::default()
     };
@@ -246,6 +251,7 @@ fn describe(info: &Info) -> String {
         ("scheme", info.scheme.to_owned()),
         ("boundary rule", info.boundary.to_owned()),
         ("creasing rule", info.creasing.to_owned()),
+        ("triangle rule", info.triangles.to_owned()),
         ("patches", format!("{} (all exact)", list(&info.patches))),
         ("without tangent plane", info.without_tangent_plane.to_string()),
         ("patches by depth", list(&info.patch_depths)),

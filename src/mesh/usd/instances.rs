@@ -17,6 +17,8 @@ pub(super) fn digest(mesh: &SubdivMesh, local: &[DVec3]) -> u64 {
     (&mesh.face_sizes, &mesh.face_vertices, &mesh.holes).hash(&mut hasher);
     mesh.creases.iter().for_each(|crease| (crease.vertices, crease.sharpness.to_bits()).hash(&mut hasher));
     mesh.corners.iter().for_each(|corner| (corner.vertex, corner.sharpness.to_bits()).hash(&mut hasher));
+    // Meshes become those of one scheme and rule by what they had.
+    (mesh.scheme, mesh.boundary as u8, mesh.triangles as u8).hash(&mut hasher);
     hasher.finish()
 }
 

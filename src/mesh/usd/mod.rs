@@ -3,18 +3,23 @@
 //! Every Mesh prim that is visible and of purpose default or render counts, with its points in world space, in the units
 //! of the stage. Values are those at the time that was asked for, else at the default time; where an attribute has time
 //! samples alone, the first counts.
-//! What skeletons and blend shapes would do to points is passed over with a note, other primitives, subsets and primvars
-//! without one. Prims without faces are passed over where there are others.
+//! What skeletons and blend shapes would do to points, prims of other shapes, and layers that are not there or are no USD are passed
+//! over with a note, subsets and primvars without one. Prims without faces are passed over where there are others.
 //!
 //! Schema: `UsdGeomMesh`, `UsdGeomImageable` and `UsdGeomXformable` of OpenUSD.
 
 mod circles;
+mod ids;
 mod instancer;
 mod instances;
+mod mixture;
+mod motion;
 mod nesting;
 mod open;
+mod passed;
 mod prim;
 mod scene;
+mod text;
 mod value;
 mod xform;
 
@@ -30,6 +35,7 @@ use openusd::usd::{Prim, PrimPredicate, Stage};
 
 use super::error::{Place, Spot, quote};
 use super::{Choice, MeshError, SubdivMesh};
+use passed::Passed;
 use scene::Placed;
 use value::{Node, one_line};
 
@@ -61,6 +67,14 @@ struct Found {
     instancer: Option<sdf::Path>,
     /// The first one that a skeleton or blend shapes would move, and their number.
     posed: Option<(String, usize)>,
+    /// Prims that are shown and are no meshes.
+    passed: Passed,
+}
+
+impl Found {
+    fn pass_over(&mut self, kind: &str, path: &sdf::Path) {
+        self.passed.add(kind, path);
+    }
 }
 
 /// A stage that is open, and its prims.
@@ -90,9 +104,6 @@ impl File {
         let stage = open::open(absolute, &path.display().to_string())?;
         let mut paths = Vec::new();
         stage.traverse(PrimPredicate::DEFAULT_PROXIES, |path| paths.push(path.clone())).map_err(unreadable)?;
-        if let Some(error) = stage.composition_errors().first() {
-            return Err(MeshError::UsdIncomplete { at: at(), reason: one_line(error) });
-        }
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         Ok(Self { stage, paths, file: path.display().to_string(), name })
     }
@@ -109,6 +120,10 @@ impl File {
         let mut scene = scene::join(found.meshes, &self.file, &self.name)?;
         scene.up = up_axis(&self.stage);
         scene.meters_per_unit = Some(meters_per_unit(&self.stage));
+        let missing = passed::missing(&self.stage.composition_errors());
+        scene.notes.extend(missing.map(|what| format!("passed over: {what}")));
+        let shapes = found.passed.list();
+        scene.notes.extend(shapes.map(|shapes| format!("passed over, since meshes alone are read: {shapes}")));
         scene.notes.extend(found.posed.map(|(first, count)| {
             let others = if count == 1 { String::new() } else { format!(" and {} more", count - 1) };
             format!("{first}{others}: skeletons and blend shapes are not applied; points are those of the rest pose")
@@ -167,6 +182,7 @@ impl Reader<'_> {
                 // What is below is there to be instanced.
                 found.instancer = Some(path.clone());
             }
+            kind if state.is_shown() && self.choice.takes(&name) => found.pass_over(kind, path),
             _ => {}
         }
         states.insert(path.clone(), state);
@@ -211,7 +227,11 @@ impl Reader<'_> {
     fn check_found(&self, found: &Found) -> Result<(), MeshError> {
         let at = || Place::with(self.file, Spot::Whole);
         if found.shown.is_empty() {
-            return Err(MeshError::NoMeshPrims { at: at() });
+            if let Some(reason) = passed::missing(&self.stage.composition_errors()) {
+                return Err(MeshError::UsdIncomplete { at: at(), reason });
+            }
+            let passed = found.passed.list().map(|shapes| format!(" (passed over: {shapes})")).unwrap_or_default();
+            return Err(MeshError::NoMeshPrims { at: at(), passed });
         }
         for prim in &self.choice.prims {
             let alone = Choice { prims: vec![prim.clone()], ..self.choice.clone() };

@@ -11,8 +11,8 @@ use std::rc::Rc;
 use std::time::SystemTime;
 
 use super::circles::Arcs;
-use super::nesting;
 use super::value::one_line;
+use super::{nesting, text};
 use crate::mesh::MeshError;
 use crate::mesh::error::{Place, Spot, quote};
 
@@ -62,8 +62,9 @@ impl Resolver for Watching {
             return Err(io::Error::other("not a file"));
         }
         let bytes = self.inner.open_asset(path)?.into_buffer()?.into_shared();
-        let is_binary = bytes.starts_with(b"PXR-USDC") || bytes.starts_with(b"PK");
-        if !is_binary && nesting::depth(&bytes) > DEEPEST {
+        let is_text = !bytes.starts_with(b"PXR-USDC") && !bytes.starts_with(b"PK");
+        let bytes = if is_text { ar::SharedBuffer::new(text::plain(&bytes)) } else { bytes };
+        if is_text && nesting::depth(&bytes) > DEEPEST {
             return Err(io::Error::other(format!("nested more than {DEEPEST} deep")));
         }
         if let Some(arcs) = &mut *self.arcs.borrow_mut() {

@@ -2,11 +2,11 @@
 
 use glam::{DMat4, DVec3};
 
-use super::instances;
 use super::scene::Placed;
 use super::value::Node;
+use super::{instances, motion};
 use crate::mesh::validate::{Source, check};
-use crate::mesh::{Boundary, Corner, Crease, MeshError, Scheme, SubdivMesh};
+use crate::mesh::{Boundary, Corner, Crease, CutFaces, MeshError, Scheme, SubdivMesh, TriangleRule};
 
 /// Whether the prim has no faces at all.
 pub(super) fn is_empty(node: &Node<'_>) -> Result<bool, MeshError> {
@@ -29,9 +29,9 @@ pub(super) struct Unplaced {
 
 /// Reads the mesh. What is wrong with faces and points shows when it is placed.
 pub(super) fn read(node: &Node<'_>) -> Result<Unplaced, MeshError> {
-    let mesh = SubdivMesh {
+    let mut mesh = SubdivMesh {
         name: node.source.to_owned(),
-        points: node.required("points", node.points("points")?)?,
+        points: node.required("points", motion::points(node)?)?,
         face_sizes: node.required("faceVertexCounts", node.indices("faceVertexCounts")?)?,
         face_vertices: node.required("faceVertexIndices", node.indices("faceVertexIndices")?)?,
         creases: creases(node)?,
@@ -41,7 +41,7 @@ pub(super) fn read(node: &Node<'_>) -> Result<Unplaced, MeshError> {
         boundary: boundary(node)?,
         ..SubdivMesh::default()
     };
-    triangle_rule(node, &mesh)?;
+    mesh.triangles = triangle_rule(node, &mesh)?;
     Ok(Unplaced { mesh, is_left_handed: is_left_handed(node)? })
 }
 
@@ -57,14 +57,21 @@ impl Unplaced {
         let place = |point: &DVec3| if point.is_finite() { world.project_point3(*point) } else { *point };
         let moved = mesh.points.iter().map(place).collect();
         let local = std::mem::replace(&mut mesh.points, moved);
+        let cut = cut_concave_faces(&mut mesh);
         check(&mesh, &Source { name: &mesh.name, lines: None, first_vertex: 0 })?;
         // A transform that mirrors turns the inside out once more.
         if is_left_handed != (world.determinant() < 0.0) {
             turn(&mut mesh);
         }
         let digest = instances::digest(&mesh, &local);
-        Ok(Placed { name, mesh, world, digest })
+        Ok(Placed { name, mesh, world, digest, cut })
     }
+}
+
+/// Cuts concave faces of a mesh whose arrays agree; others are refused later.
+fn cut_concave_faces(mesh: &mut SubdivMesh) -> CutFaces {
+    let size: u64 = mesh.face_sizes.iter().map(|&size| u64::from(size)).sum();
+    if size == mesh.face_vertices.len() as u64 { mesh.cut_concave_faces() } else { CutFaces::default() }
 }
 
 fn scheme(node: &Node<'_>) -> Result<Scheme, MeshError> {
@@ -94,13 +101,15 @@ fn is_left_handed(node: &Node<'_>) -> Result<bool, MeshError> {
     }
 }
 
-/// The rule for triangles: another one than Catmull and Clark's matters only where there are any.
-fn triangle_rule(node: &Node<'_>, mesh: &SubdivMesh) -> Result<(), MeshError> {
+/// The rule for triangles: which one matters only where there are any, under Catmull and Clark's scheme.
+fn triangle_rule(node: &Node<'_>, mesh: &SubdivMesh) -> Result<TriangleRule, MeshError> {
     let name = "triangleSubdivisionRule";
     match node.token(name)?.as_deref() {
-        None | Some("catmullClark") => Ok(()),
-        Some("smooth") if mesh.scheme != Scheme::CatmullClark || !mesh.face_sizes.contains(&3) => Ok(()),
-        Some(other) => Err(refused(node, name, other, "catmullClark, or smooth for meshes without triangles")),
+        Some("smooth") if mesh.scheme == Scheme::CatmullClark && mesh.face_sizes.contains(&3) => {
+            Ok(TriangleRule::Smooth)
+        }
+        None | Some("catmullClark" | "smooth") => Ok(TriangleRule::CatmullClark),
+        Some(other) => Err(refused(node, name, other, "catmullClark or smooth")),
     }
 }
 

@@ -1,42 +1,24 @@
-//! Several meshes as one: faces and points one after the other, under one boundary rule.
-
-use std::collections::HashMap;
+//! Several meshes as one: faces and points one after the other, under one scheme and one boundary rule.
 
 use glam::DMat4;
 
 use super::instances::{Extent, Originals};
+use super::mixture::{self, Rules};
 use crate::mesh::error::{Place, Spot};
 use crate::mesh::validate::check_counts;
-use crate::mesh::{Boundary, Corner, Crease, MeshError, Part, SubdivMesh};
-
-/// Sharpness from which a vertex never decays.
-const INFINITE: f32 = 10.0;
+use crate::mesh::{Corner, Crease, CutFaces, MeshError, Part, SubdivMesh};
 
 /// One mesh of all, in their order, each under the path of its prim; `file` names it in messages.
 ///
-/// `EdgeAndCorner` is `EdgeOnly` with the vertices of a single face infinitely sharp, so meshes of both kinds become
-/// one of `EdgeOnly`; meshes without a boundary go with either.
-///
 /// # Errors
-/// Meshes of two schemes, a mesh whose boundary is not interpolated beside one whose is, and more points or faces than
-/// OpenSubdiv counts.
-pub(super) fn join(meshes: Vec<Placed>, file: &str, name: &str) -> Result<SubdivMesh, MeshError> {
-    let mut scene = SubdivMesh { name: name.to_owned(), ..SubdivMesh::default() };
-    scene.boundary = match &meshes[..] {
-        [one] => one.mesh.boundary,
-        _ => common_rule(&meshes)?,
-    };
-    scene.scheme = meshes.first().map_or_else(Default::default, |first| first.mesh.scheme);
-    if let Some(Placed { mesh, .. }) = meshes.iter().find(|placed| placed.mesh.scheme != scene.scheme) {
-        let (first, found) = (scene.scheme.name(), mesh.scheme.name());
-        return Err(MeshError::SchemeMixed { at: Place::with(&mesh.name, Spot::Whole), first, found });
-    }
+/// More points or faces than OpenSubdiv counts.
+pub(super) fn join(mut meshes: Vec<Placed>, file: &str, name: &str) -> Result<SubdivMesh, MeshError> {
+    let mut notes = cut_notes(&meshes);
+    let Rules { scheme, boundary, triangles } = mixture::unify(&mut meshes, &mut notes);
+    let mut scene = SubdivMesh { name: name.to_owned(), scheme, boundary, triangles, notes, ..SubdivMesh::default() };
     let mut originals = Originals::default();
-    for Placed { name, mut mesh, world, digest } in meshes {
+    for Placed { name, mesh, world, digest, .. } in meshes {
         let before = Extent::of(&scene);
-        if mesh.boundary == Boundary::EdgeAndCorner && scene.boundary == Boundary::EdgeOnly {
-            sharpen_lone_vertices(&mut mesh);
-        }
         append(&mut scene, mesh);
         // Indices fit as long as their number does.
         check_counts(&scene, &Place::with(file, Spot::Whole))?;
@@ -61,44 +43,29 @@ pub(super) struct Placed {
     pub world: DMat4,
     /// Digest of all that it is before that ([`digest`](super::instances::digest)).
     pub digest: u64,
+    /// Which of its faces were cut before it was placed.
+    pub cut: CutFaces,
 }
 
-fn common_rule(meshes: &[Placed]) -> Result<Boundary, MeshError> {
-    let mut rules: Vec<(&SubdivMesh, Boundary)> = Vec::new();
-    for Placed { mesh, .. } in meshes {
-        if rules.iter().all(|&(_, rule)| rule != mesh.boundary) && has_boundary(mesh) {
-            rules.push((mesh, mesh.boundary));
-        }
+/// What to tell of all faces that were cut.
+fn cut_notes(meshes: &[Placed]) -> Vec<String> {
+    let sum = |of: fn(&CutFaces) -> Option<(usize, usize)>| {
+        let mut found = meshes.iter().filter_map(|placed| Some((placed, of(&placed.cut)?))).peekable();
+        let (placed, (_, first)) = *found.peek()?;
+        Some((placed.name.as_str(), (found.map(|(_, (count, _))| count).sum(), first)))
+    };
+    let (cut, crossing) = (sum(|cut| cut.cut), sum(|cut| cut.crossing));
+    let mut notes = Vec::new();
+    for (name, told) in [
+        cut.map(|(name, cut)| (name, CutFaces { cut: Some(cut), crossing: None })),
+        crossing.map(|(name, crossing)| (name, CutFaces { cut: None, crossing: Some(crossing) })),
+    ]
+    .into_iter()
+    .flatten()
+    {
+        notes.extend(told.notes(|face| format!("face {face} of {name}")));
     }
-    match rules[..] {
-        [] => Ok(Boundary::EdgeAndCorner),
-        [(_, rule)] => Ok(rule),
-        _ => match rules.iter().find(|(_, rule)| *rule == Boundary::None) {
-            Some((mesh, _)) => Err(MeshError::BoundaryMixed { at: Place::with(&mesh.name, Spot::Whole) }),
-            None => Ok(Boundary::EdgeOnly),
-        },
-    }
-}
-
-/// Whether an edge has a single face.
-fn has_boundary(mesh: &SubdivMesh) -> bool {
-    let mut faces_at = HashMap::new();
-    for (_, face) in mesh.faces() {
-        for (k, &vertex) in face.iter().enumerate() {
-            let next = face[(k + 1) % face.len()];
-            *faces_at.entry([vertex.min(next), vertex.max(next)]).or_insert(0_u32) += 1;
-        }
-    }
-    faces_at.values().any(|&faces| faces == 1)
-}
-
-fn sharpen_lone_vertices(mesh: &mut SubdivMesh) {
-    let mut faces_at = vec![0_u32; mesh.points.len()];
-    for &vertex in &mesh.face_vertices {
-        faces_at[vertex as usize] += 1;
-    }
-    let lone = (0..).zip(&faces_at).filter(|(_, faces)| **faces == 1);
-    mesh.corners.extend(lone.map(|(vertex, _)| Corner { vertex, sharpness: INFINITE }));
+    notes
 }
 
 fn append(scene: &mut SubdivMesh, mesh: SubdivMesh) {

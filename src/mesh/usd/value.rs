@@ -15,6 +15,19 @@ pub(super) struct Node<'a> {
     pub(super) time: Option<f64>,
 }
 
+/// `UsdTimeCode::SafeStep()`: twice the spacing of doubles at 1e6, times ten.
+const SAFE_STEP: f64 = f64::EPSILON * 1e6 * 10.0 * 2.0;
+
+/// What an attribute is at the last sample before a time.
+#[derive(Debug, Clone)]
+pub(super) struct Held<T> {
+    pub(super) value: T,
+    /// The time of that sample.
+    pub(super) at: f64,
+    /// The samples before and behind the time.
+    pub(super) between: [f64; 2],
+}
+
 impl Node<'_> {
     pub(super) fn place(&self) -> Place {
         Place::with(self.source, Spot::Whole)
@@ -22,8 +35,29 @@ impl Node<'_> {
 
     /// The value of an attribute at the time; at the default time, where there are only time samples, the first of them.
     pub(super) fn value(&self, name: &str) -> Result<Option<Value>, MeshError> {
+        self.value_at(name, self.time)
+    }
+
+    /// The value of an attribute at its last sample before the time, and between which samples the time is; `None` at the
+    /// default time, and of an attribute without samples.
+    pub(super) fn held(&self, name: &str) -> Result<Option<Held<Value>>, MeshError> {
+        let Some(time) = self.time else { return Ok(None) };
+        let between = |time| {
+            let samples = self.prim.attribute(name).bracketing_time_samples(TimeCode::new(time));
+            samples.map_err(|error| self.unreadable(name, &error))
+        };
+        let Some((at, next)) = between(time)? else { return Ok(None) };
+        // At a sample the one that follows counts, as in UsdGeom's `samplingUtils`.
+        let (from, to) = if at == next { between(time + SAFE_STEP)?.unwrap_or((at, next)) } else { (at, next) };
+        Ok(self.value_at(name, Some(at))?.map(|value| Held { value, at, between: [from, to] }))
+    }
+
+    fn value_at(&self, name: &str, time: Option<f64>) -> Result<Option<Value>, MeshError> {
         let attribute = self.prim.attribute(name);
-        let value = match self.time {
+        if time.is_some() && attribute.has_authored_metadata("spline").map_err(|error| self.unreadable(name, &error))? {
+            return Err(MeshError::AttributeSpline { at: self.place(), name: quote(name.as_bytes()) });
+        }
+        let value = match time {
             Some(time) => attribute.get_at::<Value>(TimeCode::new(time)),
             None => match attribute.get::<Value>() {
                 Ok(None) => attribute.get_at::<Value>(TimeCode::EARLIEST),
@@ -91,26 +125,12 @@ impl Node<'_> {
         }
     }
 
-    pub(super) fn longs(&self, name: &'static str) -> Result<Option<Vec<i64>>, MeshError> {
+    /// Integers of 64 bits; those of another type count as none, as in OpenUSD.
+    pub(super) fn longs(&self, name: &'static str) -> Result<Vec<i64>, MeshError> {
         match self.value(name)? {
-            None => Ok(None),
-            Some(Value::Int64Vec(values)) => Ok(Some(values)),
-            Some(_) => Err(self.wrong_type(name, "int64[]")),
+            Some(Value::Int64Vec(values)) => Ok(values),
+            _ => Ok(Vec::new()),
         }
-    }
-
-    /// Quaternions in whichever precision they have, the real part first.
-    pub(super) fn quaternions(&self, name: &'static str) -> Result<Option<Vec<[f64; 4]>>, MeshError> {
-        Ok(Some(match self.value(name)? {
-            None => return Ok(None),
-            Some(Value::QuathVec(values)) => {
-                values.into_iter().map(|q| [q.w.into(), q.x.into(), q.y.into(), q.z.into()]).collect()
-            }
-            Some(Value::QuatfVec(values)) => {
-                values.into_iter().map(|q| [q.w.into(), q.x.into(), q.y.into(), q.z.into()]).collect()
-            }
-            Some(_) => return Err(self.wrong_type(name, "quath[]")),
-        }))
     }
 
     /// Prims that a relationship leads to.
@@ -120,18 +140,32 @@ impl Node<'_> {
 
     /// Points in whichever precision they have.
     pub(super) fn points(&self, name: &'static str) -> Result<Option<Vec<DVec3>>, MeshError> {
-        Ok(Some(match self.value(name)? {
-            None => return Ok(None),
-            Some(Value::Vec3fVec(points)) => {
-                points.into_iter().map(|p| DVec3::new(p.x.into(), p.y.into(), p.z.into())).collect()
-            }
-            Some(Value::Vec3dVec(points)) => points.into_iter().map(|p| DVec3::new(p.x, p.y, p.z)).collect(),
-            Some(Value::Vec3hVec(points)) => {
-                points.into_iter().map(|p| DVec3::new(p.x.into(), p.y.into(), p.z.into())).collect()
-            }
-            Some(_) => return Err(self.wrong_type(name, "point3f[]")),
-        }))
+        let value = self.value(name)?;
+        value.map(|value| points_of(value).ok_or_else(|| self.wrong_type(name, "point3f[]"))).transpose()
     }
+}
+
+/// The points of a value, if it has some.
+pub(super) fn points_of(value: Value) -> Option<Vec<DVec3>> {
+    Some(match value {
+        Value::Vec3fVec(points) => points.into_iter().map(|p| DVec3::new(p.x.into(), p.y.into(), p.z.into())).collect(),
+        Value::Vec3dVec(points) => points.into_iter().map(|p| DVec3::new(p.x, p.y, p.z)).collect(),
+        Value::Vec3hVec(points) => points.into_iter().map(|p| DVec3::new(p.x.into(), p.y.into(), p.z.into())).collect(),
+        _ => return None,
+    })
+}
+
+/// The quaternions of a value, the real part first, if it has some.
+pub(super) fn quaternions_of(value: Value) -> Option<Vec<[f64; 4]>> {
+    Some(match value {
+        Value::QuathVec(values) => {
+            values.into_iter().map(|q| [q.w.into(), q.x.into(), q.y.into(), q.z.into()]).collect()
+        }
+        Value::QuatfVec(values) => {
+            values.into_iter().map(|q| [q.w.into(), q.x.into(), q.y.into(), q.z.into()]).collect()
+        }
+        _ => return None,
+    })
 }
 
 /// `error: WHAT --> FILE:LINE:COLUMN | EXCERPT`, as the text reader says it, without what the message has already.
@@ -154,6 +188,11 @@ pub(super) fn one_line(error: &dyn std::error::Error) -> String {
         }
         cause = error.source();
     }
+    line_of(&text)
+}
+
+/// A message of the reader as one line.
+pub(super) fn line_of(text: &str) -> String {
     let words: Vec<&str> = text.split_whitespace().collect();
     let line = without_excerpt(&words.join(" "));
     let cut: String = line.chars().filter(|c| !c.is_control()).take(200).collect();

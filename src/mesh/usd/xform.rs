@@ -12,6 +12,29 @@ use crate::mesh::error::quote;
 
 const RESET: &str = "!resetXformStack!";
 
+/// The operations of `UsdGeomXformOp`.
+const KINDS: [&str; 19] = [
+    "translate",
+    "translateX",
+    "translateY",
+    "translateZ",
+    "scale",
+    "scaleX",
+    "scaleY",
+    "scaleZ",
+    "rotateX",
+    "rotateY",
+    "rotateZ",
+    "rotateXYZ",
+    "rotateXZY",
+    "rotateYXZ",
+    "rotateYZX",
+    "rotateZXY",
+    "rotateZYX",
+    "orient",
+    "transform",
+];
+
 /// What a prim does to its points, and whether its parents do theirs.
 pub(super) struct Local {
     pub(super) matrix: DMat4,
@@ -21,7 +44,7 @@ pub(super) struct Local {
 /// The operations of a prim, multiplied.
 ///
 /// # Errors
-/// An operation that is not one of USD's, or that has no value of its type.
+/// An operation that is not one of USD's, or that has a value of another type.
 pub(super) fn local(node: &Node<'_>) -> Result<Local, MeshError> {
     let order = node.tokens("xformOpOrder")?;
     let reset = order.iter().rposition(|op| op == RESET);
@@ -36,8 +59,11 @@ fn operation(node: &Node<'_>, op: &str) -> Result<DMat4, MeshError> {
     let (name, inverted) = op.strip_prefix("!invert!").map_or((op, false), |name| (name, true));
     let unknown = || MeshError::TransformUnknown { at: node.place(), op: quote(op.as_bytes()) };
     let kind = name.strip_prefix("xformOp:").ok_or_else(unknown)?.split(':').next().unwrap_or_default();
-    let value =
-        node.value(name)?.ok_or_else(|| MeshError::TransformMissing { at: node.place(), op: quote(op.as_bytes()) })?;
+    if !KINDS.contains(&kind) {
+        return Err(unknown());
+    }
+    // An operation without a value does nothing.
+    let Some(value) = node.value(name)? else { return Ok(DMat4::IDENTITY) };
     let wrong = |expected| node.wrong_type(&quote(name.as_bytes()), expected);
     let vector = |value: Value| value.cast::<[f64; 3]>().map(DVec3::from).map_err(|_| wrong("three numbers"));
     let number = |value: Value| value.cast::<f64>().map_err(|_| wrong("a number"));
@@ -73,6 +99,11 @@ fn operation(node: &Node<'_>, op: &str) -> Result<DMat4, MeshError> {
 pub(super) fn scaling(factors: DVec3) -> DMat4 {
     // Not from_scale, which does not take zeros in debug builds.
     DMat4::from_diagonal(factors.extend(1.0))
+}
+
+/// A turn about an axis, of whatever length, by an angle in degrees.
+pub(super) fn turning(axis: DVec3, degrees: f64) -> DMat4 {
+    axis.try_normalize().map_or(DMat4::IDENTITY, |axis| DMat4::from_axis_angle(axis, degrees.to_radians()))
 }
 
 /// The turn of a quaternion, as `GfRotation::SetQuat` reads it: one whose length is not 1 turns by its real part.

@@ -3,7 +3,7 @@
 use super::likeness::TYPICAL;
 use super::search::{Supposed, search};
 use super::{Answer, Judge, sample_set};
-use crate::mesh::{Boundary, Creasing, Scheme, SubdivMesh};
+use crate::mesh::{Boundary, Creasing, Scheme, SubdivMesh, TriangleRule};
 use crate::patch::PatchKind;
 use crate::stam::{Jet, LimitSurface};
 use crate::verify::Sample;
@@ -521,6 +521,10 @@ fn other_rules(mesh: &SubdivMesh) -> Vec<(String, SubdivMesh)> {
             }
         };
         others.push((mistake.to_owned(), SubdivMesh { creasing, ..mesh.clone() }));
+    }
+    if mesh.triangles == TriangleRule::Smooth {
+        let mistake = "triangles are refined as other faces, the mesh asks for the smooth rule".to_owned();
+        others.push((mistake, SubdivMesh { triangles: TriangleRule::CatmullClark, ..mesh.clone() }));
     }
     if !mesh.holes.is_empty() {
         others.push(("holes are filled".to_owned(), SubdivMesh { holes: Vec::new(), ..mesh.clone() }));
