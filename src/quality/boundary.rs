@@ -16,8 +16,9 @@ const MOST_LOOKED_AT: usize = 256;
 /// A boundary that comes near itself must be so many times longer than the distance that it spans: neighbours along a boundary, the two
 /// edges of a corner and opposite points of a round opening (pi / 2 times) are no seam.
 const DETOUR: f64 = 8.0;
-/// Cosine of the angle between the tangents of two boundaries that run along each other: 60 degrees.
-const ALONG: f64 = 0.5;
+/// Cosine of the largest angle between two boundaries that run along each other: 20 degrees. Two sheets that meet at an angle have
+/// boundaries which leave their common corner at that angle, and are no seam there.
+const ALONG: f64 = 0.94;
 /// Sine of the angle by which the line between two boundary points may lean towards a surface or along the other boundary: 30 degrees.
 const ASIDE: f64 = 0.5;
 
@@ -269,8 +270,13 @@ impl<'a> Boundary<'a> {
     }
 
     fn is_one_component(&self, own: &Station, other: &Station) -> bool {
-        let [a, b] = [own, other].map(|station| self.components[self.rims[station.rim].face as usize]);
+        let [a, b] = [own, other].map(|station| self.component(self.rims[station.rim].face));
         a == b
+    }
+
+    /// A number for a control face: the same for faces that hang together.
+    pub fn component(&self, face: u32) -> u32 {
+        self.components[face as usize]
     }
 
     /// The way from one point to another along the boundary; infinite where there is none.

@@ -88,7 +88,7 @@ impl Seams {
         edges.dedup();
         Seams {
             nearby: nearby(gauge, boundary, weld),
-            unwelded: unwelded(gauge.control, boundary, weld),
+            unwelded: unwelded(gauge.control, boundary, &pairs, weld),
             features: features(gauge, boundary, pairs),
             edges,
         }
@@ -118,23 +118,33 @@ fn nearby(gauge: &Gauge<'_>, boundary: &Boundary<'_>, weld: f64) -> Option<Nearb
     found.into_iter().reduce(|a, b| if b.distance < a.distance { b } else { a })
 }
 
-/// Control vertices of the boundary that lie on others within `weld`.
-fn unwelded(control: &Control<'_>, boundary: &Boundary<'_>, weld: f64) -> Option<Unwelded> {
-    // Each vertex with one that it has a boundary edge to.
-    let mut edges: BTreeMap<u32, u32> = BTreeMap::new();
-    for [a, b] in boundary.rims.iter().map(|rim| rim.edge) {
-        edges.entry(a).or_insert(b);
-        edges.entry(b).or_insert(a);
+/// Control vertices of the boundary that lie on others within `weld`. In one component a narrow strip has such vertices on its two
+/// sides: there they count where they are the ends of a seam, or one point.
+fn unwelded(control: &Control<'_>, boundary: &Boundary<'_>, pairs: &[Pair], weld: f64) -> Option<Unwelded> {
+    /// Part of the weld distance that is one point.
+    const POINT: f64 = 1e-6;
+    let of_seams: BTreeSet<u32> =
+        pairs.iter().flat_map(|pair| [pair.own, pair.other]).flat_map(|rim| boundary.rims[rim].edge).collect();
+    // Each vertex with one that it has a boundary edge to, and the component of the face there.
+    let mut edges: BTreeMap<u32, (u32, u32)> = BTreeMap::new();
+    for rim in &boundary.rims {
+        let ([a, b], component) = (rim.edge, boundary.component(rim.face));
+        edges.entry(a).or_insert((b, component));
+        edges.entry(b).or_insert((a, component));
     }
     let point = |vertex: u32| control.mesh.points[vertex as usize];
     let entries = edges.keys().map(|&vertex| GeomWithData::new(point(vertex).to_array(), vertex));
     let tree = RTree::bulk_load(entries.collect());
     let mut found: Option<Unwelded> = None;
-    for (&vertex, &next) in &edges {
+    for (&vertex, &(next, component)) in &edges {
         let near = tree.nearest_neighbor_iter(point(vertex).to_array()).take(MOST_VERTICES);
         let near = near.map(|entry| (entry.data, point(entry.data).distance(point(vertex))));
         let partner = near.take_while(|(_, distance)| *distance <= weld).find(|&(other, distance)| {
-            other < vertex && boundary.is_apart([vertex, next], [other, edges[&other]], distance)
+            let (beside, of_other) = edges[&other];
+            let is_joined = component != of_other
+                || distance <= POINT * weld
+                || (of_seams.contains(&vertex) && of_seams.contains(&other));
+            other < vertex && is_joined && boundary.is_apart([vertex, next], [other, beside], distance)
         });
         if let Some((other, distance)) = partner {
             let first = Unwelded { count: 0, first: [other, vertex], distance };

@@ -160,7 +160,7 @@ pub(super) fn run(args: &LinesArgs) -> Result<(), Failure> {
         Failure::Bad(format!("{}: {what}", mesh.name))
     })?;
     say_orientation(args.mesh.as_deref(), &mesh);
-    let has_no_area = say_without_area(&mesh, &scout, "it has no lines");
+    say_without_area(&mesh, &scout, "its lines say nothing");
     // A surface at one point has no diagonal.
     let tolerance = args.tolerance.unwrap_or(TOLERANCE * surface.diagonal()).max(f64::MIN_POSITIVE);
     let least = LEAST_TOLERANCE * surface.diagonal();
@@ -182,9 +182,9 @@ pub(super) fn run(args: &LinesArgs) -> Result<(), Failure> {
     args.record(tolerance, &mut command);
     let made_by = command.finish(mesh_digest(&mesh), &field.method);
 
-    let mut curves = account.time("trace", || match has_no_area {
-        true => Vec::new(),
-        false => curves::trace(&surface, &field, &camera, &family.values, tolerance),
+    let mut curves = account.time("trace", || match surface.diagonal() > 0.0 {
+        false => Vec::new(),
+        true => curves::trace(&surface, &field, &camera, &family.values, tolerance),
     });
     if field.method.is_bounded() && field.light.half[1].is_finite() {
         curves = account.time("extents", || extent::within(&surface, &field, &camera, curves));

@@ -134,16 +134,16 @@ fn summary(verdict: &Verdict<'_>) -> String {
     let quality = verdict.quality;
     let mut out = String::new();
     let kinds = [
-        ("creases", Kind::Feature(FeatureKind::Crease)),
-        ("semi-sharp creases", Kind::Feature(FeatureKind::SemiSharp)),
-        ("seams", Kind::Feature(FeatureKind::Seam)),
-        ("vertices", Kind::Vertex),
+        (["crease", "creases"], Kind::Feature(FeatureKind::Crease)),
+        (["semi-sharp crease", "semi-sharp creases"], Kind::Feature(FeatureKind::SemiSharp)),
+        (["seam", "seams"], Kind::Feature(FeatureKind::Seam)),
+        (["vertex", "vertices"], Kind::Vertex),
     ];
-    let counts = kinds.map(|(name, kind)| {
+    let counts = kinds.map(|([one, many], kind)| {
         let of: Vec<&Ranked<'_>> = verdict.ranked.iter().filter(|ranked| ranked.kind() == kind).collect();
         let over = of.iter().filter(|ranked| ranked.is_over()).count();
         let ignored = if verdict.ignored.iter().any(|i| i.kind() == kind) { ", ignored" } else { "" };
-        format!("{} {name} ({over} over{ignored})", of.len())
+        format!("{} {} ({over} over{ignored})", of.len(), if of.len() == 1 { one } else { many })
     });
     let _ = writeln!(out, "{}: {}", verdict.mesh.name, counts.join(", "));
     let Extremes { samples, gap, angle_deg, difference, .. } = quality.smooth;
