@@ -239,7 +239,7 @@ impl<'a> Boundary<'a> {
         }
         let at = if a.1.abs() < b.1.abs() { a.2 } else { b.2 };
         let distance = at.jet.position.distance(point);
-        (lean(&at).abs() <= ASIDE * distance || distance == 0.0).then_some((at, distance))
+        (lean(&at).abs() <= ASIDE * distance + rounding(point)).then_some((at, distance))
     }
 
     /// Whether two points of the boundary are those of a seam: the boundaries run along each other, are not neighbours along one
@@ -253,14 +253,11 @@ impl<'a> Boundary<'a> {
         if !is_one_edge && self.detour(own, other) <= DETOUR * distance {
             return false;
         }
-        // A narrow strip lies between its own boundaries. Sheets of two components may overlap.
-        !(self.spans_surface(own, other, distance) && self.is_one_component(own, other))
-    }
-
-    /// Whether the line from one point of the boundary to another runs into the surface on both sides.
-    fn spans_surface(&self, own: &Station, other: &Station, distance: f64) -> bool {
-        let line = (other.jet.position - own.jet.position) / distance;
-        distance > 0.0 && line.dot(own.inward()) > ASIDE && -line.dot(other.inward()) > ASIDE
+        // A narrow strip lies between its own boundaries, and a fold brings the boundaries of its two leaves together. Sheets of two
+        // components may overlap.
+        let is_apart = distance > rounding(own.jet.position);
+        let is_own = is_apart && (spans_surface(own, other) || is_folded(own, other));
+        !(is_own && self.is_one_component(own, other))
     }
 
     /// Whether a gap between two points of the boundary lies outside of the surface on both sides.
@@ -318,6 +315,22 @@ impl<'a> Boundary<'a> {
         }
         least
     }
+}
+
+/// How far a point may be off by rounding: some sixteen units in the last place of its largest coordinate.
+fn rounding(point: DVec3) -> f64 {
+    16.0 * f64::EPSILON * point.abs().max_element()
+}
+
+/// Whether the line from one point of the boundary to another runs into the surface on both sides.
+fn spans_surface(own: &Station, other: &Station) -> bool {
+    let line = (other.jet.position - own.jet.position).normalize_or_zero();
+    line.dot(own.inward()) > ASIDE && -line.dot(other.inward()) > ASIDE
+}
+
+/// Whether the surfaces at two points of the boundary lie on each other, like the leaves of a fold.
+fn is_folded(own: &Station, other: &Station) -> bool {
+    own.inward().dot(other.inward()) > ALONG
 }
 
 /// Whether the faces on the two sides of a seam run against each other: then one normal points to the other side.

@@ -121,8 +121,8 @@ fn nearby(gauge: &Gauge<'_>, boundary: &Boundary<'_>, weld: f64) -> Option<Nearb
 /// Control vertices of the boundary that lie on others within `weld`. In one component a narrow strip has such vertices on its two
 /// sides: there they count where they are the ends of a seam, or one point.
 fn unwelded(control: &Control<'_>, boundary: &Boundary<'_>, pairs: &[Pair], weld: f64) -> Option<Unwelded> {
-    /// Part of the weld distance that is one point.
-    const POINT: f64 = 1e-6;
+    /// Part of the weld distance that is one point: with the default, a few thousand roundings of the diagonal.
+    const POINT: f64 = 1e-9;
     let of_seams: BTreeSet<u32> =
         pairs.iter().flat_map(|pair| [pair.own, pair.other]).flat_map(|rim| boundary.rims[rim].edge).collect();
     // Each vertex with one that it has a boundary edge to, and the component of the face there.
