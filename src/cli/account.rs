@@ -14,6 +14,8 @@ pub(super) struct Account {
     steps: Vec<(&'static str, Duration)>,
     summary: Option<Summary>,
     pictures: usize,
+    /// Pictures none of whose samples sees the surface.
+    empty: usize,
     comparisons: Vec<Compared>,
 }
 
@@ -80,10 +82,27 @@ impl Account {
     /// A picture was taken.
     pub fn picture(&mut self, summary: Option<Summary>) {
         self.pictures += 1;
+        self.empty += usize::from(summary.is_some_and(|summary| summary.covered == 0));
         self.summary = match (self.summary, summary) {
             (Some(sum), Some(one)) => Some(sum.and(one)),
             (sum, one) => sum.or(one),
         };
+    }
+
+    /// The picture that was taken last turns out to show nothing.
+    pub fn picture_is_empty(&mut self) {
+        self.empty += 1;
+    }
+
+    /// A line on standard error where pictures show nothing of the surface.
+    pub fn say_empty(&self) {
+        let why =
+            "it lies outside of the view, behind the eye, or edge-on; leave --eye and --target out to fit the view";
+        match (self.empty, self.pictures) {
+            (0, _) => {}
+            (1, 1) => tell!("catoptric: no sample of the picture sees the surface: {why}"),
+            (empty, all) => tell!("catoptric: {empty} of {all} pictures see nothing of the surface: {why}"),
+        }
     }
 
     /// A picture was compared with one of OpenSubdiv's patches.

@@ -2,11 +2,11 @@
 
 use super::args::GlintsArgs;
 use super::rows::shortest;
+use super::scene::say_without_area;
 use super::{Failure, progress, refined, write_out};
 use crate::field::{DEFAULT_FOV, Scout, sample_rig};
 use crate::output::check_writable;
 use crate::physical::{Nature, PathEnd, PathPoint, physical_reflections};
-use crate::stam::LimitSurface;
 use glam::DVec3;
 use serde_json::json;
 
@@ -19,12 +19,19 @@ pub(super) fn run(args: &GlintsArgs) -> Result<(), Failure> {
     }
     let mesh = args.scene.load_quads(args.mesh.as_deref(), "glints")?;
     let surface = refined(&mesh, &progress("searching".to_owned()))?;
+    let scout = Scout::new(&surface);
+    if let Some(scout) = &scout {
+        say_without_area(&mesh, scout, "nothing can be mirrored");
+    }
     let eye = match (args.eye, args.eye_direction) {
         (_, Some(direction)) => PathEnd::Direction(direction),
         (Some(eye), None) => PathEnd::Point(eye),
-        (None, None) => PathEnd::Point(fitted_eye(&surface, mesh.up, args.mesh.is_none()).ok_or_else(|| {
-            Failure::of(&mesh, "no face has a limit surface, so no eye can be fitted; give --eye X,Y,Z")
-        })?),
+        (None, None) => {
+            let scout = scout.as_ref().ok_or_else(|| {
+                Failure::of(&mesh, "no face has a limit surface, so no eye can be fitted; give --eye X,Y,Z")
+            })?;
+            PathEnd::Point(fitted_eye(scout, mesh.up, args.mesh.is_none()))
+        }
     };
     let points = args.light_point.iter().map(|&light| physical_reflections(&surface, PathEnd::Point(light), eye));
     let points: Vec<Vec<PathPoint>> = points.collect();
@@ -33,13 +40,12 @@ pub(super) fn run(args: &GlintsArgs) -> Result<(), Failure> {
 }
 
 /// The eye of `render`'s default camera, whose picture is square.
-fn fitted_eye(surface: &LimitSurface, up: Option<DVec3>, is_sample: bool) -> Option<DVec3> {
+fn fitted_eye(scout: &Scout, up: Option<DVec3>, is_sample: bool) -> DVec3 {
     const SIZE: [u32; 2] = [1024; 2];
-    let scout = Scout::new(surface)?;
     let up = up.unwrap_or(DVec3::Z);
     let default = scout.camera(SIZE, up);
     let direction = if is_sample { sample_rig().0 } else { default.eye - default.target };
-    Some(scout.camera_from(SIZE, up, direction, DEFAULT_FOV).eye)
+    scout.camera_from(SIZE, up, direction, DEFAULT_FOV).eye
 }
 
 fn nature(point: &PathPoint) -> &'static str {

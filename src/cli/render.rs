@@ -7,7 +7,7 @@ use super::field::{ColourArgs, FieldArgs, PatternArgs};
 use super::frames::{Found, FramesArgs};
 use super::patches::PatchesArgs;
 use super::rig::RigArgs;
-use super::scene::{AnimationArgs, Source, say_notes};
+use super::scene::{AnimationArgs, Source, say_notes, say_orientation, say_without_area};
 use super::series::Series;
 use super::settings::{MeshAt, made_by, mesh_digest};
 use super::{Failure, Steps, progress, refined};
@@ -181,6 +181,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let times = args.scene.times();
     let mut body = account.time("read", || source.at(times[0])).map_err(Failure::Bad).and_then(|mesh| {
         say_notes(args.mesh.as_deref(), &mesh);
+        say_orientation(args.mesh.as_deref(), &mesh);
         account.time("patches and classes", || Body::new(mesh, times.len() > 1, &bar))
     })?;
     let scout = account.time("fit", || Scout::new(body.surface())).ok_or_else(|| {
@@ -227,7 +228,13 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
         let shot = shot(index, body.digest);
         match &ready {
             Drawn::Both(pair) => pair.take(shot.path, &shot.view, &shot.made_by, &mut account)?,
-            Drawn::One(tables) => shot.take(format, args.show, &gpu, tables, &mut account)?,
+            Drawn::One(tables) => {
+                shot.take(format, args.show, &gpu, tables, &mut account)?;
+                // The exact pipeline counts what it sees; of the others, points of the surface are asked.
+                if shot.view.pipeline != Pipeline::Exact && times.len() == 1 && !scout.is_in_view(&shot.view.camera) {
+                    account.picture_is_empty();
+                }
+            }
         }
         drawn = Some(ready);
         steps.iter().for_each(Steps::done_one);
@@ -235,6 +242,9 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     bar.finish_and_clear();
     drop(steps);
     save_rig()?;
+    if !say_without_area(&body.mesh, &scout, "nothing can be seen") {
+        account.say_empty();
+    }
     account.say_certificate(samples);
     account.write(args.json.as_ref(), Some(gpu.adapter()), samples)?;
     if args.timings {

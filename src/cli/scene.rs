@@ -3,6 +3,7 @@
 use super::Failure;
 use super::numbered::Numbered;
 use super::settings::CommandLine;
+use crate::field::Scout;
 use crate::mesh::{self, Choice, MeshFile, Scheme, SubdivMesh};
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -158,6 +159,22 @@ pub(super) fn say_notes(path: Option<&Path>, mesh: &SubdivMesh) {
     for note in &mesh.notes {
         tell!("catoptric: {}: {note}", path.unwrap_or(Path::new("sample")).display());
     }
+}
+
+/// Faces that run against their neighbours, on standard error.
+pub(super) fn say_orientation(path: Option<&Path>, mesh: &SubdivMesh) {
+    for sentence in mesh.orientation().sentences(mesh) {
+        tell!("catoptric: {}: {sentence}", path.unwrap_or(Path::new("sample")).display());
+    }
+}
+
+/// Says on standard error that a surface has no area, if it has none; what cannot be done therefore.
+pub(super) fn say_without_area(mesh: &SubdivMesh, scout: &Scout, so: &str) -> bool {
+    let why = scout.without_area();
+    if let Some(why) = &why {
+        tell!("catoptric: {}: the surface has no area; {so}: {why}", mesh.name);
+    }
+    why.is_some()
 }
 
 /// Where the mesh of each time comes from.

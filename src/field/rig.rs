@@ -57,6 +57,41 @@ impl Scout {
         Some(Scout { outline, points, normals, curvatures, areas, bounds })
     }
 
+    /// Why the surface has no area, if it has none that its coordinates can tell from rounding: the rest of a sentence, and what to do.
+    pub fn without_area(&self) -> Option<String> {
+        /// Length below which areas underflow, as squares of squares do.
+        const TINY: f64 = 1e-75;
+        let extent = (self.bounds[1] - self.bounds[0]).max_element();
+        let coordinate = self.bounds.iter().fold(0.0f64, |most, corner| most.max(corner.abs().max_element()));
+        // Each point carries some roundings of the largest coordinate.
+        let rounding = 64.0 * f64::EPSILON * coordinate;
+        let area: f64 = self.areas.iter().sum::<f64>() / (GRID * GRID) as f64;
+        if extent == 0.0 {
+            Some("all of it lies at one point; check the points of the file".to_owned())
+        } else if extent <= rounding {
+            let what = "where its coordinates are rounded; move it to the origin";
+            Some(format!("it spans {extent:.0e} units at coordinates of {coordinate:.0e}, {what}"))
+        } else if extent < TINY {
+            Some(format!("it spans {extent:.0e} units, where areas underflow; scale it to {TINY:.0e} or more"))
+        } else if area <= rounding * extent {
+            Some("all its faces are folded to lines or points; check the points of the file".to_owned())
+        } else {
+            None
+        }
+    }
+
+    /// Whether one of the points looked at falls into the picture and is not seen edge-on. Others may hide it.
+    pub fn is_in_view(&self, camera: &Camera) -> bool {
+        /// Sine of the angle to the line of sight below which a surface is edge-on.
+        const EDGE_ON: f64 = 1e-9;
+        let size = camera.size.map(f64::from);
+        (0..self.points.len()).any(|i| {
+            let sight = camera.sight(self.points[i]).normalize_or_zero();
+            let is_inside = |[x, y]: [f64; 2]| x >= 0.0 && y >= 0.0 && x <= size[0] && y <= size[1];
+            self.normals[i].dot(sight).abs() > EDGE_ON && camera.project(self.points[i]).is_some_and(is_inside)
+        })
+    }
+
     /// A camera that sees all of the surface from `direction` (from the object to the eye), vertical field of view `fov`
     /// in degrees.
     pub fn camera_from(&self, size: [u32; 2], up: DVec3, direction: DVec3, fov: f64) -> Camera {

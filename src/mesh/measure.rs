@@ -40,6 +40,7 @@ impl SubdivMesh {
             size_of_val(&self.face_vertices[..]),
             size_of_val(&self.creases[..]),
             size_of_val(&self.corners[..]),
+            size_of_val(&self.face_lines[..]),
         ];
         lists.iter().sum::<usize>() as u64
     }

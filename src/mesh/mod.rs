@@ -13,6 +13,7 @@ mod linear;
 mod lines;
 mod measure;
 mod obj;
+mod orientation;
 mod originals;
 mod parts;
 mod polygon;
@@ -31,6 +32,7 @@ use crate::memory;
 
 pub use concave::CutFaces;
 pub use error::{MeshError, Place, Spot};
+pub use orientation::{FacePlace, Orientation};
 pub use originals::Originals;
 pub use parts::{Part, PtexParts, Repeat};
 pub use sample::sample;
@@ -209,6 +211,8 @@ pub struct SubdivMesh {
     pub meters_per_unit: Option<f64>,
     /// The meshes of a USD stage, in their order, covering all faces and points; empty for a mesh from elsewhere.
     pub parts: Vec<Part>,
+    /// Line of the file that each face stands on, counted from 1; empty for a mesh that comes from no text of faces.
+    pub face_lines: Vec<u32>,
     /// What the reader passed over that shapes would show, in sentences.
     pub notes: Vec<String>,
 }

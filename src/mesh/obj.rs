@@ -57,7 +57,7 @@ pub(super) fn parse(text: &[u8], source: &str, name: &str) -> Result<SubdivMesh,
     reader.cut_concave_faces();
     let source = Source { name: source, lines: Some(&reader.lines), first_vertex: 1 };
     check(&reader.mesh, &source)?;
-    Ok(reader.mesh)
+    Ok(SubdivMesh { face_lines: reader.lines.faces, ..reader.mesh })
 }
 
 struct Reader<'a> {

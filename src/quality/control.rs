@@ -1,5 +1,6 @@
 //! Which line of the control mesh a patch's edge lies on, and which vertex its corner is.
 
+use super::joint::on_edge;
 use crate::mesh::SubdivMesh;
 use crate::patch::Patch;
 use std::collections::HashMap;
@@ -109,6 +110,48 @@ impl Control<'_> {
             2 => Line::Spoke { face, corner: before },
             _ => Line::Edge(self.edge(face, before)),
         }
+    }
+
+    /// The control edge that a patch's local edge lies on, the lower vertex first, and which part of it the point `t` of the local edge
+    /// is at, counted from that vertex. Only for an edge whose [`line`](Self::line) is an edge.
+    pub fn along(&self, patch: &Patch, edge: u8, t: f64) -> ([u32; 2], f64) {
+        let cell_edge = u32::from((edge + patch.rotation) % 4);
+        let [u, v] = patch.to_ptex(on_edge(edge, t));
+        // Counter-clockwise round the ptex face.
+        let part = [u, v, 1.0 - u, 1.0 - v][cell_edge as usize];
+        let [face, quadrant] = self.ptex[patch.ptex as usize];
+        let size = self.mesh.face_sizes[face as usize];
+        let (corner, part) = match cell_edge {
+            _ if size == 4 => (cell_edge, part),
+            // The first half of the edge at the quadrant's corner, or the second half of the one before.
+            0 => (quadrant, 0.5 * part),
+            _ => ((quadrant + size - 1) % size, 0.5 + 0.5 * part),
+        };
+        let corners = self.corners(face);
+        let is_upwards = corners[corner as usize] < corners[(corner as usize + 1) % corners.len()];
+        (self.edge(face, corner), if is_upwards { part } else { 1.0 - part })
+    }
+
+    /// A number for each control face: the same for faces that hang together by vertices, over faces that are no holes.
+    pub fn components(&self) -> Vec<u32> {
+        fn root(parent: &mut [u32], mut vertex: u32) -> u32 {
+            while parent[vertex as usize] != vertex {
+                parent[vertex as usize] = parent[parent[vertex as usize] as usize];
+                vertex = parent[vertex as usize];
+            }
+            vertex
+        }
+        let mut is_hole = vec![false; self.mesh.face_count()];
+        self.mesh.holes.iter().for_each(|&hole| is_hole[hole as usize] = true);
+        let mut parent: Vec<u32> = (0..self.mesh.points.len() as u32).collect();
+        for (_, face) in self.mesh.faces().filter(|(face, _)| !is_hole[*face]) {
+            let first = root(&mut parent, face[0]);
+            for &vertex in &face[1..] {
+                let other = root(&mut parent, vertex);
+                parent[other as usize] = first;
+            }
+        }
+        self.mesh.faces().map(|(_, face)| root(&mut parent, face[0])).collect()
     }
 
     /// The point at a patch's local (0,0).

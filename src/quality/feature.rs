@@ -15,6 +15,8 @@ pub enum FeatureKind {
     SemiSharp,
     /// A line inside the smooth surface whose joints exceed their limits all the same.
     Smooth,
+    /// Boundaries that lie beside each other without being one edge.
+    Seam,
 }
 
 impl FeatureKind {
@@ -24,17 +26,23 @@ impl FeatureKind {
             FeatureKind::Crease => "crease",
             FeatureKind::SemiSharp => "semi-sharp",
             FeatureKind::Smooth => "smooth",
+            FeatureKind::Seam => "seam",
         }
     }
 }
 
-/// A crease, or a smooth line with a break.
+/// A crease, a smooth line with a break, or a seam.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Feature {
     /// Which.
     pub kind: FeatureKind,
-    /// The crease; `None` for smooth lines.
+    /// The crease, or one side of a seam; `None` for smooth lines.
     pub chain: Option<Chain>,
+    /// Of a seam: what lies beside the chain. Empty where both sides are one chain, as at a slit or where two faces run along one edge
+    /// in the same direction.
+    pub beside: Vec<Chain>,
+    /// Of a seam: the faces on its two sides run against each other. It is judged as if one side were turned.
+    pub reversed: bool,
     /// Line of the control mesh that the worst point lies on.
     pub line: Line,
     /// Least and greatest sharpness along it.
@@ -96,6 +104,8 @@ fn join(control: &Control<'_>, kind: FeatureKind, parts: Vec<(Line, Part)>, chai
     let mut feature = Feature {
         kind,
         chain,
+        beside: Vec::new(),
+        reversed: false,
         line: worst.0,
         sharpness: [f32::INFINITY, 0.0],
         extremes: Extremes::default(),

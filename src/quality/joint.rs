@@ -6,12 +6,12 @@ use super::{Continuity, Extremes, Finding, Limits, LineBreak, Reading};
 use crate::curves::Place;
 use crate::osd::INFINITE_SHARPNESS;
 use crate::patch::{Adjacency, Neighbour, PatchKind};
-use crate::stam::{Jet2, LimitSurface, Window};
+use crate::stam::{Jet, Jet2, LimitSurface, Window};
 use glam::DVec3;
 use rayon::prelude::*;
 
 /// Parameters of the points of a piece that are measured. Its ends are left to the vertices: curvature need not exist there.
-const PARTS: [f64; 5] = [1.0 / 64.0, 0.25, 0.5, 0.75, 63.0 / 64.0];
+pub(super) const PARTS: [f64; 5] = [1.0 / 64.0, 0.25, 0.5, 0.75, 63.0 / 64.0];
 /// Parameters across a semi-sharp crease at which its roundness is looked for, beside the crease itself. It is roundest there where
 /// its sharpness is a whole number and its faces are flat; so this is a precaution.
 const ASIDE: [f64; 2] = [0.25, 0.5];
@@ -160,12 +160,21 @@ impl Gauge<'_> {
         let own = on_edge(edge, from + part * (to - from));
         let other = neighbour.carry(edge, own);
         let at = [(patch as usize, own), (neighbour.patch as usize, other)];
-        let sides = at.map(|(patch, uv)| self.surface.evaluate_second(patch, uv));
-        let along = tangent(&sides[0], edge);
+        self.compare(at, edge, false)
+    }
+
+    /// Compares two points, each given by its patch and local parameters, of which the first one is on this edge of its patch;
+    /// `turned`: the second patch runs against the first one, so its normal counts from the other side.
+    pub fn compare(&self, at: [(usize, [f64; 2]); 2], edge: u8, turned: bool) -> Finding {
+        let mut sides = at.map(|(patch, uv)| self.surface.evaluate_second(patch, uv));
+        let along = tangent(&sides[0].first, edge);
         let rounding = [0, 1].map(|i| rounding(self.surface, at[i].0, at[i].1, &sides[i], self.coordinate));
+        if turned {
+            sides[1] = sides[1].turned();
+        }
         let [ours, theirs] = &sides;
         Finding {
-            place: place(self.surface, patch as usize, own),
+            place: place(self.surface, at[0].0, at[0].1),
             position: ours.first.position,
             continuity: Continuity::new([ours, theirs], along, rounding),
             line: self.reading.and_then(|r| LineBreak::new(r.field, r.camera, [ours, theirs], along, rounding)),
@@ -179,7 +188,7 @@ impl Gauge<'_> {
             let [u, v] = on_edge(edge, t);
             let uv = [[u, aside], [1.0 - aside, v], [u, 1.0 - aside], [aside, v]][usize::from(edge)];
             let jet = self.surface.evaluate_second(patch, uv);
-            Form::of(&jet, axes(&jet, tangent(&jet, edge))?).map(|form| form.second.abs())
+            Form::of(&jet, axes(&jet, tangent(&jet.first, edge))?).map(|form| form.second.abs())
         };
         let sides = [(piece.patch, piece.edge, piece.own), (neighbour.patch, neighbour.edge, neighbour.other)];
         let beside = sides.into_iter().flat_map(|(patch, edge, [from, to])| {
@@ -191,7 +200,7 @@ impl Gauge<'_> {
 }
 
 /// Derivative of a patch along its edge, counter-clockwise.
-fn tangent(jet: &Jet2, edge: u8) -> DVec3 {
-    let (du, dv) = (jet.first.du, jet.first.dv);
+pub(super) fn tangent(jet: &Jet, edge: u8) -> DVec3 {
+    let (du, dv) = (jet.du, jet.dv);
     [du, dv, -du, -dv][usize::from(edge)]
 }

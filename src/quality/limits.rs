@@ -2,7 +2,7 @@
 
 use super::Continuity;
 
-/// The largest gap, angle and difference in curvature that are no break.
+/// The largest gap, angle and difference in curvature that are no break, and what counts as a seam.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits {
     /// G0, model units.
@@ -11,12 +11,17 @@ pub struct Limits {
     pub angle_deg: f64,
     /// G2, 2 |k1 - k2| / (|k1| + |k2|): 0.02 is 2 %.
     pub difference: f64,
+    /// How far apart two boundaries may be to be a joint, model units; 0: none is. `None`: [`WELD`] times the diagonal.
+    pub weld: Option<f64>,
 }
+
+/// Part of the diagonal of the control points within which boundaries are a joint where nothing else is said.
+pub const WELD: f64 = 1e-3;
 
 impl Default for Limits {
     /// The defaults of CATIA's connect checker, with millimetres as the unit: 0.001 mm, 0.5 degrees, 2 %.
     fn default() -> Limits {
-        Limits { gap: 0.001, angle_deg: 0.5, difference: 0.02 }
+        Limits { gap: 0.001, angle_deg: 0.5, difference: 0.02, weld: None }
     }
 }
 

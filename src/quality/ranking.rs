@@ -24,10 +24,11 @@ pub enum Kind {
 
 impl Kind {
     /// All of them.
-    pub const ALL: [Kind; 4] = [
+    pub const ALL: [Kind; 5] = [
         Kind::Feature(FeatureKind::Crease),
         Kind::Feature(FeatureKind::SemiSharp),
         Kind::Feature(FeatureKind::Smooth),
+        Kind::Feature(FeatureKind::Seam),
         Kind::Vertex,
     ];
 

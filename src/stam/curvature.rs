@@ -1,6 +1,6 @@
 //! Curvature from second derivatives.
 
-use super::Jet2;
+use super::{Jet, Jet2};
 
 /// Curvatures of a surface at a point, in inverse model units; positive where the surface bends towards its normal.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,6 +14,14 @@ pub struct Curvature {
 }
 
 impl Jet2 {
+    /// The same point with the normal on the other side: the two parameters change places.
+    #[must_use]
+    pub fn turned(&self) -> Jet2 {
+        let Jet { position, du, dv, normal } = self.first;
+        let first = Jet { position, du: dv, dv: du, normal: -normal };
+        Jet2 { first, duu: self.dvv, duv: self.duv, dvv: self.duu }
+    }
+
     /// Curvature from the two fundamental forms (do Carmo 1976, section 3.3); `None` where the first derivatives are
     /// parallel or vanish, or second derivatives are not finite: at extraordinary vertices curvature need not exist.
     pub fn curvature(&self) -> Option<Curvature> {

@@ -39,7 +39,7 @@ impl MovingSurface {
     /// As [`LimitSurface::new`].
     pub fn new(mesh: &SubdivMesh) -> Result<Self, PatchError> {
         let (surface, refinement) = LimitSurface::with_refinement(mesh)?;
-        let topology = SubdivMesh { points: Vec::new(), notes: Vec::new(), ..mesh.clone() };
+        let topology = SubdivMesh { points: Vec::new(), notes: Vec::new(), face_lines: Vec::new(), ..mesh.clone() };
         Ok(Self { refinement, topology, vertices: mesh.points.len(), surface })
     }
 

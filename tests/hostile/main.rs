@@ -1,6 +1,7 @@
 //! What goes wrong outside: files that end too early, disks that are full, folders that are locked, signals, odd arguments.
 //! One line and exit code 2, and every file whole.
 
+mod degenerate;
 #[cfg(unix)]
 mod memory;
 #[cfg(unix)]

@@ -38,7 +38,7 @@ const NUMERIC: &[(&str, &[&str])] = &[
     ("render MESH --size=24x24 -o v.png --frames 2", &["--orbit", "--sweep-light"]),
     ("render MESH --size=24x24 -o v.png --field curvature:mean", &["--range", "--light-spacing"]),
     ("lines MESH -o l.json", &["--count", "--values", "--tolerance", "--eye", "--light-spacing", "--size"]),
-    ("quality MESH", &["--size", "--eye", "--gap", "--angle", "--curvature", "--top"]),
+    ("quality MESH", &["--size", "--eye", "--gap", "--angle", "--curvature", "--weld", "--top"]),
     ("verify MESH --size=16x16", &["--size", "--only", "--plant"]),
     ("glints MESH --eye=3.5,-2.5,4", &["--light-point"]),
     ("glints MESH --light-point=1,4,5", &["--eye", "--eye-direction"]),

@@ -5,6 +5,7 @@ mod corpus;
 mod fixtures;
 mod forms;
 mod oracle;
+mod orientation;
 mod random;
 mod refused;
 mod refused_tags;

@@ -47,7 +47,7 @@ fn exit_codes_say_what_the_limits_say() {
     let (code, out, json) = run(name, &["--ignore", "creases,vertices"]);
     assert_eq!((code, &json["pass"], &json["judged"]), (Some(0), &true.into(), &0.into()), "{out}");
     assert!(places(&json).iter().all(|place| place["rank"].is_null()) && places(&json).len() == 3);
-    assert!(out.contains("pass: none of 0 is over its limits"), "{out}");
+    assert!(out.contains("\npass: the smooth joints (") && out.ends_with(") are within their limits\n"), "{out}");
     let (code, _, json) = run(name, &["--angle", "180", "--curvature=200"]);
     assert_eq!((code, &json["over"], &json["judged"]), (Some(0), &0.into(), &3.into()));
     // Between the angle of the crease and a hair more: a limit is kept by what is equal to it.
@@ -256,7 +256,10 @@ fn bad_input_is_one_line_and_leaves_nothing() {
         (&["--curvature", "x"], "--curvature"),
         (&["--mm-per-unit", "0"], "give a number of millimetres from 1e-30 to 1e30"),
         (&["--mm-per-unit", "1e308"], "give a number of millimetres from 1e-30 to 1e30"),
-        (&["--ignore", "seams"], "possible values: creases, semi-sharp, smooth, vertices"),
+        (&["--ignore", "edges"], "possible values: creases, semi-sharp, smooth, seams, vertices"),
+        (&["--weld", "-1"], "give a distance, 0 or above"),
+        (&["--weld", "nan"], "give a distance, 0 or above"),
+        (&["--weld", "inf"], "give a distance, 0 or above"),
         (&["--count", "some"], "--count"),
         (&["-o", "q.jpg"], "choose a name that ends in .png"),
         (&["-o", "no/such/q.png"], "no/such/q.png: cannot write"),
@@ -281,4 +284,84 @@ fn bad_input_is_one_line_and_leaves_nothing() {
     let output = quality(folder.path(), bare.to_str().expect("a name"), &[]);
     let error = text(&output.stderr);
     assert!(output.status.code() == Some(2) && error.contains("nothing to measure"), "{error}");
+}
+
+/// Where nothing is judged, nothing passes.
+#[test]
+fn nothing_to_judge_is_no_pass() {
+    let judged_nothing = |name: &str, args: &[&str], why: &str| {
+        let (code, out, json) = run(name, args);
+        assert_eq!(
+            (code, &json["pass"], &json["verdict"]),
+            (Some(0), &Value::Null, &"nothing to judge".into()),
+            "{out}"
+        );
+        assert!(out.contains(&format!("\nnothing to judge: {why}")) && !out.contains("pass"), "{out}");
+        (out, json)
+    };
+    let (out, json) =
+        judged_nothing("torn/gap_strip", &[], "no two patches meet, and no boundary is within 0.002 units");
+    let hint = "\na boundary runs 0.071 units beside another one, at 1.000,0.500,0.000: --weld 0.08 judges it\n";
+    assert!(out.contains(hint), "{out}");
+    let nearby = json["nearby_boundary"]["distance"].as_f64().expect("a distance");
+    assert!((nearby - 0.05 * 2f64.sqrt()).abs() < 1e-12);
+    judged_nothing("torn/gap_strip", &["--weld", "0.08", "--ignore", "seams"], "all that was found is ignored");
+    judged_nothing("crease_sectors_1_3", &["--ignore", "creases,vertices,smooth"], "all that was found is ignored");
+    judged_nothing("boundary_none", &[], "what there is stands above as not judged");
+    // A single face without a neighbour.
+    judged_nothing("torn/gap_strip", &["--weld", "0"], "no two patches meet");
+    let (_, out, json) = run("lathe_c2", &[]);
+    assert!(out.contains("\npass: the smooth joints (408) are within their limits\n"), "{out}");
+    assert_eq!((&json["pass"], &json["verdict"]), (&true.into(), &"pass".into()));
+}
+
+/// What the hint says to do, does it.
+#[test]
+fn boundaries_within_the_weld_distance_are_judged() {
+    let (code, out, json) = run("torn/gap_strip", &["--weld", "0.08"]);
+    assert_eq!((code, &json["pass"], &json["verdict"]), (Some(1), &false.into(), &"fail".into()), "{out}");
+    assert!(out.contains("\nFAIL: 1 of 1 over their limits\n") && out.contains(" 1 seam (1 over)"), "{out}");
+    let [seam] = places(&json) else { panic!("one seam: {out}") };
+    assert_eq!((&seam["kind"], &seam["worst"], &seam["reversed"]), (&"seam".into(), &"gap".into(), &false.into()));
+    assert_eq!(
+        (&seam["vertices"], &seam["beside"][0]["vertices"]),
+        (&serde_json::json!([1, 2]), &serde_json::json!([4, 7]))
+    );
+    assert!((seam["gap"].as_f64().expect("a gap") - 0.05 * 2f64.sqrt()).abs() < 1e-12);
+    let unwelded = &json["unwelded_vertices"];
+    assert_eq!((&unwelded["count"], &unwelded["first"]), (&2.into(), &serde_json::json!([1, 4])));
+    let sentence =
+        "2 control vertices on boundaries lie within 0.080 units of another one, unwelded: the first are 1 and 4";
+    assert!(out.contains(sentence), "{out}");
+    assert!(json["made_by"].as_str().is_some_and(|command| command.contains(" --weld=0.08 ")), "{}", json["made_by"]);
+    // In millimetres, as gaps are.
+    let (_, _, json) = run("torn/gap_strip", &["--weld", "80", "--mm-per-unit", "1000"]);
+    assert!((places(&json)[0]["gap"].as_f64().expect("a gap") - 50.0 * 2f64.sqrt()).abs() < 1e-9);
+    assert_eq!(json["weld"], 80.0);
+    let (code, out, _) =
+        run("torn/gap_strip", &["--weld", "79.9", "--mm-per-unit", "1000", "--gap", "71", "--angle", "30"]);
+    assert_eq!(code, Some(0), "{out}");
+}
+
+#[test]
+fn faces_that_run_against_their_neighbours_are_named() {
+    let (code, out, json) = run("torn/one_face_flipped", &[]);
+    assert_eq!(code, Some(1));
+    assert!(out.contains("\n1 face runs against its neighbours, face 1 (line 10): "), "{out}");
+    assert!(out.contains("\n1 seam joins faces that run against each other; "), "{out}");
+    let first = serde_json::json!({ "count": 1, "first": { "face": 1, "line": 10, "prim": null } });
+    assert_eq!(json["reversed_faces"], first);
+    assert_eq!(json["one_sided_components"], serde_json::json!({ "count": 0, "first": null }));
+    let seam = places(&json).iter().find(|place| place["kind"] == "seam").expect("a seam");
+    assert_eq!((&seam["reversed"], &seam["closed"]), (&true.into(), &true.into()));
+    assert!(seam["gap"].as_f64().is_some_and(|gap| gap < 1e-14), "{seam}");
+    assert_eq!(json["unjudged"]["nonmanifold_edges"], serde_json::json!([]));
+}
+
+#[test]
+fn a_surface_without_area_is_said() {
+    let (code, out, json) = run("torn/all_points_equal", &[]);
+    assert_eq!(code, Some(1), "{out}");
+    assert!(out.contains("\nthe surface has no area: all of it lies at one point; "), "{out}");
+    assert!(json["without_area"].is_string() && !out.to_lowercase().contains("nan"));
 }

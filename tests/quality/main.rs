@@ -2,10 +2,14 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+#[path = "../common/rng.rs"]
+mod rng;
 
 mod askew;
 mod command;
 mod lines;
+mod mutated;
 mod revolution;
+mod seams;
 mod surfaces;
 mod vertices;

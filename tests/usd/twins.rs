@@ -59,6 +59,8 @@ fn expected(mesh: &SubdivMesh) -> SubdivMesh {
         up: Some(DVec3::Y),
         meters_per_unit: Some(0.01),
         parts: vec![Part { name: "/m".to_owned(), faces, points, repeats: None }],
+        // A stage has no lines.
+        face_lines: Vec::new(),
         ..mesh.clone()
     }
 }

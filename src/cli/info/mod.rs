@@ -7,7 +7,7 @@ use adaptive::AdaptiveLevel;
 use super::args::InfoArgs;
 use super::{Failure, progress, refined, write_out};
 use crate::gpu;
-use crate::mesh::{Boundary, Creasing, Part, SubdivMesh, TriangleRule};
+use crate::mesh::{Boundary, Creasing, FacePlace, Orientation, Part, SubdivMesh, TriangleRule};
 use crate::osd::{INFINITE_SHARPNESS, Level, MAX_ISOLATION, Refiner, Rule};
 use crate::patch::PatchKind;
 use crate::stam::LimitSurface;
@@ -49,6 +49,9 @@ struct Info {
     semi_sharp_vertices: usize,
     largest_finite_sharpness: f32,
     holes: usize,
+    /// Faces that run against their neighbours, and components with one side only.
+    reversed_faces: Faces,
+    one_sided_components: Faces,
     scheme: &'static str,
     boundary: &'static str,
     creasing: &'static str,
@@ -70,6 +73,42 @@ struct Info {
     gpu_table_bytes_by_layout: BTreeMap<String, u64>,
     /// OpenSubdiv's feature-adaptive patches, level by level.
     opensubdiv: Vec<AdaptiveLevel>,
+}
+
+/// Some faces: how many, and the first.
+#[derive(Debug, Default, Serialize)]
+struct Faces {
+    count: usize,
+    first: Option<FirstFace>,
+}
+
+/// A face, as the file counts it.
+#[derive(Debug, Serialize)]
+struct FirstFace {
+    face: u32,
+    line: Option<u32>,
+    prim: Option<String>,
+    #[serde(skip)]
+    name: String,
+}
+
+impl Faces {
+    fn new(mesh: &SubdivMesh, faces: &[u32]) -> Faces {
+        let first = faces.first().map(|&face| {
+            let place = mesh.face_place(face);
+            let FacePlace { face, line, prim } = place;
+            FirstFace { face, line, prim: prim.map(str::to_owned), name: place.to_string() }
+        });
+        Faces { count: faces.len(), first }
+    }
+
+    /// The number, with the first face and what to do.
+    fn describe(&self, remedy: &str) -> String {
+        match &self.first {
+            None => "none".to_owned(),
+            Some(first) => format!("{} (the first: {}; {remedy})", self.count, first.name),
+        }
+    }
 }
 
 /// A mesh of a stage.
@@ -149,6 +188,9 @@ fn collect(mesh: &SubdivMesh, surface: &LimitSurface, control: &Level) -> Info {
     for kind in PatchKind::ALL {
         info.patches.insert(kind.name(), surface.patches().iter().filter(|patch| patch.kind == kind).count());
     }
+    let Orientation { reversed, one_sided } = mesh.orientation();
+    info.reversed_faces = Faces::new(mesh, &reversed);
+    info.one_sided_components = Faces::new(mesh, &one_sided);
     edges(control, &mut info);
     vertices(control, &mut info);
     info
@@ -246,6 +288,8 @@ fn describe(info: &Info) -> String {
         ("boundary valences", list(&info.boundary_valences)),
         ("vertex rules", list(&info.rules)),
         ("edges", edges),
+        ("against their neighbours", info.reversed_faces.describe("flip it")),
+        ("one-sided components", info.one_sided_components.describe("cut it across")),
         ("semi-sharp vertices", info.semi_sharp_vertices.to_string()),
         ("largest finite sharpness", info.largest_finite_sharpness.to_string()),
         ("scheme", info.scheme.to_owned()),

@@ -7,7 +7,7 @@ use super::account::Account;
 use super::args::size;
 use super::field::FieldArgs;
 use super::rig::{RigArgs, is_orthographic, positive};
-use super::scene::SceneArgs;
+use super::scene::{SceneArgs, say_orientation, say_without_area};
 use super::settings::{CommandLine, mesh_digest, method_name};
 use super::{Failure, progress, refined, write_out};
 use crate::curves::{self, Curve};
@@ -159,7 +159,10 @@ pub(super) fn run(args: &LinesArgs) -> Result<(), Failure> {
         let what = "no face has a limit surface (holes, or boundary rule none); no line to trace";
         Failure::Bad(format!("{}: {what}", mesh.name))
     })?;
-    let tolerance = args.tolerance.unwrap_or(TOLERANCE * surface.diagonal());
+    say_orientation(args.mesh.as_deref(), &mesh);
+    say_without_area(&mesh, &scout, "its lines say nothing");
+    // A surface at one point has no diagonal.
+    let tolerance = args.tolerance.unwrap_or(TOLERANCE * surface.diagonal()).max(f64::MIN_POSITIVE);
     let least = LEAST_TOLERANCE * surface.diagonal();
     if tolerance < least {
         return Err(Failure::Bad(format!(
@@ -179,7 +182,10 @@ pub(super) fn run(args: &LinesArgs) -> Result<(), Failure> {
     args.record(tolerance, &mut command);
     let made_by = command.finish(mesh_digest(&mesh), &field.method);
 
-    let mut curves = account.time("trace", || curves::trace(&surface, &field, &camera, &family.values, tolerance));
+    let mut curves = account.time("trace", || match surface.diagonal() > 0.0 {
+        false => Vec::new(),
+        true => curves::trace(&surface, &field, &camera, &family.values, tolerance),
+    });
     if field.method.is_bounded() && field.light.half[1].is_finite() {
         curves = account.time("extents", || extent::within(&surface, &field, &camera, curves));
     }

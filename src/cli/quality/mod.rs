@@ -13,7 +13,7 @@ use super::settings::{CommandLine, mesh_digest};
 use super::{Failure, progress, refined, write_out};
 use crate::field::{Field, Pattern, Scout};
 use crate::gpu::View;
-use crate::mesh::{PtexParts, SubdivMesh};
+use crate::mesh::{Orientation, PtexParts, SubdivMesh};
 use crate::output::check_writable;
 use crate::quality::{FeatureKind, Kind, Limits, Quality, Ranked, Reading};
 use crate::rig::{CameraRig, FittedRig, PatternName, PatternRig, Rig};
@@ -45,6 +45,10 @@ pub(super) struct QualityArgs {
     /// Largest difference in curvature that is no break (G2): 2 |k1 - k2| / (|k1| + |k2|), percent, 0 to 200
     #[arg(long, value_name = "PERCENT", default_value_t = 2.0, value_parser = limit, allow_negative_numbers = true)]
     curvature: f64,
+    /// How far apart two boundaries may be to be judged as a joint, world units; millimetres with --mm-per-unit. 0: none is
+    /// [default: 1e-3 of the diagonal]
+    #[arg(long, value_name = "D", value_parser = weld, allow_negative_numbers = true)]
+    weld: Option<f64>,
     /// Millimetres that a world unit takes: gaps are in millimetres then
     #[arg(long, value_name = "MM", value_parser = unit, allow_negative_numbers = true)]
     mm_per_unit: Option<f64>,
@@ -75,6 +79,8 @@ enum Ignored {
     SemiSharp,
     /// Lines inside the smooth surface
     Smooth,
+    /// Boundaries that lie beside each other
+    Seams,
     /// Extraordinary vertices, those on creases too
     Vertices,
 }
@@ -85,6 +91,7 @@ impl Ignored {
             Ignored::Creases => Kind::Feature(FeatureKind::Crease),
             Ignored::SemiSharp => Kind::Feature(FeatureKind::SemiSharp),
             Ignored::Smooth => Kind::Feature(FeatureKind::Smooth),
+            Ignored::Seams => Kind::Feature(FeatureKind::Seam),
             Ignored::Vertices => Kind::Vertex,
         }
     }
@@ -102,6 +109,11 @@ fn limit(text: &str) -> Result<f64, String> {
     limit.ok_or_else(|| format!("give a number, {LEAST:e} or above: less is rounding"))
 }
 
+fn weld(text: &str) -> Result<f64, String> {
+    let distance = text.parse().ok().filter(|x: &f64| *x >= 0.0 && x.is_finite());
+    distance.ok_or_else(|| "give a distance, 0 or above".to_owned())
+}
+
 fn unit(text: &str) -> Result<f64, String> {
     let unit = text.parse().ok().filter(|x: &f64| (1e-30..=1e30).contains(x));
     unit.ok_or_else(|| "give a number of millimetres from 1e-30 to 1e30".to_owned())
@@ -116,6 +128,9 @@ struct Verdict<'a> {
     /// The worst first; those that are ignored too.
     ranked: Vec<Ranked<'a>>,
     ignored: Vec<Ignored>,
+    orientation: Orientation,
+    /// Why the surface has no area, where it has none.
+    without_area: Option<String>,
     /// As asked for.
     limits: AskedLimits,
     made_by: String,
@@ -127,6 +142,7 @@ struct AskedLimits {
     gap: f64,
     angle_deg: f64,
     percent: f64,
+    weld: Option<f64>,
     mm_per_unit: Option<f64>,
 }
 
@@ -141,7 +157,12 @@ impl AskedLimits {
     }
 
     fn limits(&self) -> Limits {
-        Limits { gap: self.gap / self.gap_unit(), angle_deg: self.angle_deg, difference: self.percent / 100.0 }
+        Limits {
+            gap: self.gap / self.gap_unit(),
+            angle_deg: self.angle_deg,
+            difference: self.percent / 100.0,
+            weld: self.weld.map(|weld| weld / self.gap_unit()),
+        }
     }
 }
 
@@ -157,6 +178,17 @@ impl Verdict<'_> {
 
     fn over(&self) -> usize {
         self.judged().filter(|ranked| ranked.is_over()).count()
+    }
+
+    /// Joints inside the smooth surface that are judged.
+    fn smooth_joints(&self) -> usize {
+        if self.ignored.contains(&Ignored::Smooth) { 0 } else { self.quality.smooth_joints }
+    }
+
+    /// Whether limits are kept; `None` where nothing was judged.
+    fn passes(&self) -> Option<bool> {
+        let is_judged = self.judged().next().is_some() || self.smooth_joints() > 0;
+        is_judged.then(|| self.over() == 0)
     }
 }
 
@@ -179,8 +211,13 @@ pub(super) fn run(args: &QualityArgs) -> Result<(), Failure> {
     let pattern = PatternRig::fitted(pattern, &scout, &fitted);
     let name = rig.pattern.name_for(&fitted.method);
 
-    let asked =
-        AskedLimits { gap: args.gap, angle_deg: args.angle, percent: args.curvature, mm_per_unit: args.mm_per_unit };
+    let asked = AskedLimits {
+        gap: args.gap,
+        angle_deg: args.angle,
+        percent: args.curvature,
+        weld: args.weld,
+        mm_per_unit: args.mm_per_unit,
+    };
     let limits = asked.limits();
     let reading = Reading { field: &field, camera: &camera };
     let quality = account.time("measure", || Quality::measure(&mesh, &surface, Some(reading), &limits));
@@ -194,6 +231,8 @@ pub(super) fn run(args: &QualityArgs) -> Result<(), Failure> {
         quality: &quality,
         ranked: quality.ranked(&limits),
         ignored,
+        orientation: mesh.orientation(),
+        without_area: scout.without_area(),
         limits: asked,
         made_by: String::new(),
     };
@@ -259,6 +298,9 @@ impl QualityArgs {
         let limits = &verdict.limits;
         for (flag, value) in [("gap", limits.gap), ("angle", limits.angle_deg), ("curvature", limits.percent)] {
             command.flag(flag, value);
+        }
+        if let Some(weld) = limits.weld {
+            command.flag("weld", weld);
         }
         if let Some(mm) = limits.mm_per_unit {
             command.flag("mm-per-unit", mm);

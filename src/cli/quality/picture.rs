@@ -150,9 +150,10 @@ fn lines(canvas: &mut Canvas, shown: &[Shown<'_>]) {
 
 /// How many exceed their limits, and what of the numbered ones is there.
 fn said(verdict: &Verdict<'_>, marks: &[Mark], count: usize) -> String {
-    let mut text = match verdict.over() {
-        0 => "none over its limits".to_owned(),
-        over => format!("{over} over their limits"),
+    let mut text = match (verdict.passes(), verdict.over()) {
+        (None, _) => "nothing to judge".to_owned(),
+        (_, 0) => "none over its limits".to_owned(),
+        (_, over) => format!("{over} over their limits"),
     };
     let numbered = verdict.judged().count().min(count);
     if marks.len() < numbered {

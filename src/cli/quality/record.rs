@@ -2,7 +2,10 @@
 
 use super::Verdict;
 use crate::cli::settings::method_name;
-use crate::quality::{Extremes, Feature, Line, LineBreak, Ranked, Ring, Spot, Subject, Vertex};
+use crate::curves::Place;
+use crate::mesh::FacePlace;
+use crate::quality::{Chain, Extremes, Feature, FeatureKind, Line, LineBreak, Ranked, Ring, Spot, Subject, Vertex};
+use glam::DVec3;
 use serde_json::{Value, json};
 
 /// The whole of it; docs/QUALITY.md has the keys.
@@ -16,7 +19,8 @@ pub(super) fn json(verdict: &Verdict<'_>) -> serde_json::Result<Vec<u8>> {
         places.push(place(verdict, (!is_ignored).then_some(rank), ranked));
     }
     let over = verdict.over();
-    let unjudged = &verdict.quality.unjudged;
+    let quality = verdict.quality;
+    let unjudged = &quality.unjudged;
     let value = json!({
         "version": 1,
         "mesh": verdict.mesh.name,
@@ -25,8 +29,14 @@ pub(super) fn json(verdict: &Verdict<'_>) -> serde_json::Result<Vec<u8>> {
         "unit": if limits.mm_per_unit.is_some() { "mm" } else { "world" },
         "mm_per_unit": limits.mm_per_unit,
         "limits": { "gap": limits.gap, "angle_deg": limits.angle_deg, "curvature_percent": limits.percent },
+        "weld": quality.weld * limits.gap_unit(),
         "ignored": verdict.ignored.iter().map(|kind| kind.name()).collect::<Vec<_>>(),
-        "pass": over == 0,
+        "pass": verdict.passes(),
+        "verdict": match verdict.passes() {
+            Some(true) => "pass",
+            Some(false) => "fail",
+            None => "nothing to judge",
+        },
         "judged": verdict.judged().count(),
         "over": over,
         "smooth_joints": joint(verdict, &verdict.quality.smooth, verdict.quality.smooth_joints),
@@ -35,11 +45,33 @@ pub(super) fn json(verdict: &Verdict<'_>) -> serde_json::Result<Vec<u8>> {
             "nonmanifold_edges": unjudged.nonmanifold_edges,
             "nonmanifold_vertices": unjudged.nonmanifold_vertices,
         },
+        "unwelded_vertices": quality.unwelded.map(|unwelded| json!({
+            "count": unwelded.count, "first": unwelded.first, "distance": unwelded.distance * limits.gap_unit(),
+        })),
+        "nearby_boundary": quality.nearby.map(|nearby| json!({
+            "distance": nearby.distance * limits.gap_unit(), "at": at(nearby.place, nearby.position),
+        })),
+        "reversed_faces": faces(verdict, &verdict.orientation.reversed),
+        "one_sided_components": faces(verdict, &verdict.orientation.one_sided),
+        "without_area": verdict.without_area,
         "places": places,
     });
     let mut text = serde_json::to_vec_pretty(&value)?;
     text.push(b'\n');
     Ok(text)
+}
+
+fn at(place: Place, position: DVec3) -> Value {
+    json!({ "face": place.face, "u": place.u, "v": place.v, "position": position.to_array() })
+}
+
+/// Some faces of the control mesh: how many, and the first as the file counts it.
+fn faces(verdict: &Verdict<'_>, faces: &[u32]) -> Value {
+    let first = faces.first().map(|&face| {
+        let FacePlace { face, line, prim } = verdict.mesh.face_place(face);
+        json!({ "face": face, "line": line, "prim": prim })
+    });
+    json!({ "count": faces.len(), "first": first })
 }
 
 fn joint(verdict: &Verdict<'_>, extremes: &Extremes, joints: usize) -> Value {
@@ -75,9 +107,7 @@ fn place(verdict: &Verdict<'_>, rank: Option<usize>, ranked: &Ranked<'_>) -> Val
     value["worst"] = json!(worst.name());
     value["severity"] = json!(finite(severity));
     value["times_limit"] = json!({ "gap": gap, "angle": angle, "curvature": curvature });
-    value["at"] = json!(ranked.spot().map(|(place, position)| {
-        json!({ "face": place.face, "u": place.u, "v": place.v, "position": position.to_array() })
-    }));
+    value["at"] = json!(ranked.spot().map(|(place, position)| at(place, position)));
     let prim = ranked.spot().and_then(|(place, _)| verdict.parts.name(place.face));
     if let Some(prim) = prim {
         value["prim"] = json!(prim);
@@ -96,6 +126,11 @@ fn of_feature(verdict: &Verdict<'_>, feature: &Feature) -> Value {
     };
     value["lies_on"] = json!({ what: number });
     value["closed"] = json!(chain.map(|chain| chain.closed));
+    if feature.kind == FeatureKind::Seam {
+        let chain = |chain: &Chain| json!({ "vertices": chain.vertices, "closed": chain.closed });
+        value["beside"] = json!(feature.beside.iter().map(chain).collect::<Vec<_>>());
+        value["reversed"] = json!(feature.reversed);
+    }
     value["sharpness"] = json!(feature.sharpness);
     value["curvatures"] = json!(feature.extremes.worst.and_then(|(_, worst)| worst.continuity.curvature));
     // Flat: an infinite radius, which JSON has not.

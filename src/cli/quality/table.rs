@@ -1,8 +1,12 @@
 //! The verdict as text: a summary, and a list in columns.
 
 use super::Verdict;
-use crate::quality::{Break, Chain, Extremes, Kind, Line, LineBreak, Ranked, Spot, Subject, Unjudged, Vertex};
+use crate::quality::{
+    Break, Chain, Extremes, Feature, FeatureKind, Kind, Line, LineBreak, Nearby, Ranked, Spot, Subject, Unjudged,
+    Unwelded, Vertex,
+};
 use crate::statistics::{exact, short};
+use glam::DVec3;
 use std::fmt::Write;
 
 /// Columns of the list; those of words are aligned to the left.
@@ -51,26 +55,99 @@ pub(super) fn text(verdict: &Verdict<'_>, count: usize) -> String {
         );
     }
     let over = verdict.over();
-    let _ = match over {
-        0 => writeln!(out, "\npass: none of {all} is over its limits"),
-        _ => writeln!(out, "\nFAIL: {over} of {all} over their limits"),
+    let _ = match (verdict.passes(), all) {
+        (None, _) => writeln!(out, "\nnothing to judge: {}", why_nothing(verdict)),
+        (Some(false), _) => writeln!(out, "\nFAIL: {over} of {all} over their limits"),
+        (Some(true), 0) => {
+            writeln!(out, "\npass: the smooth joints ({}) are within their limits", verdict.smooth_joints())
+        }
+        (Some(true), _) => writeln!(out, "\npass: none of {all} is over its limits"),
     };
+    out
+}
+
+/// Why no place is judged, and what to do.
+fn why_nothing(verdict: &Verdict<'_>) -> String {
+    let quality = verdict.quality;
+    let Unjudged { edges_without_surface, nonmanifold_edges, nonmanifold_vertices } = &quality.unjudged;
+    let unjudged = edges_without_surface.len() + nonmanifold_edges.len() + nonmanifold_vertices.len();
+    if !verdict.ranked.is_empty() || quality.smooth_joints > 0 {
+        "all that was found is ignored; leave --ignore out".to_owned()
+    } else if unjudged > 0 {
+        "what there is stands above as not judged; mend the mesh there".to_owned()
+    } else {
+        let weld = short(quality.weld * verdict.limits.gap_unit());
+        let unit = verdict.limits.unit();
+        format!("no two patches meet, and no boundary is within {weld} {unit} of another one; give --weld a distance")
+    }
+}
+
+/// A distance that is no smaller, in one digit.
+fn rounded_up(x: f64) -> f64 {
+    let exponent = x.log10().floor();
+    let digit = (x / 10f64.powf(exponent)).ceil();
+    format!("{digit}e{exponent}").parse().unwrap_or(x)
+}
+
+/// What is wrong with the mesh rather than with the shape, a line each.
+fn about_the_mesh(verdict: &Verdict<'_>) -> String {
+    let quality = verdict.quality;
+    let (unit, scale) = (verdict.limits.unit(), verdict.limits.gap_unit());
+    let place = |p: DVec3| coordinates(p, verdict.mesh.diagonal());
+    let mut out = String::new();
+    if let Some(why) = &verdict.without_area {
+        let _ = writeln!(out, "the surface has no area: {why}");
+    }
+    for sentence in verdict.orientation.sentences(verdict.mesh) {
+        let _ = writeln!(out, "{sentence}");
+    }
+    let turned = quality.features.iter().filter(|feature| feature.reversed).count();
+    if turned > 0 {
+        let what = if turned == 1 { "1 seam joins" } else { &format!("{turned} seams join") };
+        let _ = writeln!(out, "{what} faces that run against each other; angles are those with one side flipped");
+    }
+    if let Some(Unwelded { count, first: [a, b], distance }) = quality.unwelded {
+        let weld = short(quality.weld * scale);
+        let at = place(verdict.mesh.points[a as usize]);
+        let are = if count == 1 { "control vertex on a boundary lies" } else { "control vertices on boundaries lie" };
+        let _ = writeln!(
+            out,
+            "{count} {are} within {weld} {unit} of another one, unwelded: the first are {a} and {b}, {} apart, at {at}; \
+             merge them to make one surface",
+            short(distance * scale)
+        );
+    }
+    if let Some(Nearby { distance, position, .. }) = quality.nearby {
+        let distance = distance * scale;
+        let _ = writeln!(
+            out,
+            "a boundary runs {} {unit} beside another one, at {}: --weld {} judges it",
+            short(distance),
+            place(position),
+            exact(rounded_up(distance))
+        );
+    }
     out
 }
 
 fn summary(verdict: &Verdict<'_>) -> String {
     let quality = verdict.quality;
     let mut out = String::new();
-    let kinds = [("creases", Kind::ALL[0]), ("semi-sharp creases", Kind::ALL[1]), ("vertices", Kind::ALL[3])];
-    let counts = kinds.map(|(name, kind)| {
+    let kinds = [
+        (["crease", "creases"], Kind::Feature(FeatureKind::Crease)),
+        (["semi-sharp crease", "semi-sharp creases"], Kind::Feature(FeatureKind::SemiSharp)),
+        (["seam", "seams"], Kind::Feature(FeatureKind::Seam)),
+        (["vertex", "vertices"], Kind::Vertex),
+    ];
+    let counts = kinds.map(|([one, many], kind)| {
         let of: Vec<&Ranked<'_>> = verdict.ranked.iter().filter(|ranked| ranked.kind() == kind).collect();
         let over = of.iter().filter(|ranked| ranked.is_over()).count();
         let ignored = if verdict.ignored.iter().any(|i| i.kind() == kind) { ", ignored" } else { "" };
-        format!("{} {name} ({over} over{ignored})", of.len())
+        format!("{} {} ({over} over{ignored})", of.len(), if of.len() == 1 { one } else { many })
     });
     let _ = writeln!(out, "{}: {}", verdict.mesh.name, counts.join(", "));
     let Extremes { samples, gap, angle_deg, difference, .. } = quality.smooth;
-    let broken = verdict.ranked.iter().filter(|ranked| ranked.kind() == Kind::ALL[2]).count();
+    let broken = verdict.ranked.iter().filter(|ranked| ranked.kind() == Kind::Feature(FeatureKind::Smooth)).count();
     let _ = writeln!(
         out,
         "{} smooth joints at {samples} points ({broken} lines over): gap {}, angle {}, curvature {}",
@@ -89,6 +166,7 @@ fn summary(verdict: &Verdict<'_>) -> String {
             let _ = writeln!(out, "{count} {} not judged: {why}", if count == 1 { one } else { many });
         }
     }
+    out += &about_the_mesh(verdict);
     let limits = &verdict.limits;
     let _ = writeln!(
         out,
@@ -130,10 +208,8 @@ fn row(verdict: &Verdict<'_>, rank: usize, ranked: &Ranked<'_>, diagonal: f64) -
     let none = || "-".to_owned();
     let (place, position) = match ranked.spot() {
         Some((place, position)) => {
-            // A hundredth of the diagonal, or a little better.
-            let digits = (2.5 - diagonal.log10()).ceil().clamp(0.0, 9.0) as usize;
-            let coordinates = position.to_array().map(|x| fixed(x, digits));
-            (format!("{},{},{}", place.face, part(place.u), part(place.v)), coordinates.join(","))
+            let place = format!("{},{},{}", place.face, part(place.u), part(place.v));
+            (place, coordinates(position, diagonal))
         }
         None => (none(), none()),
     };
@@ -162,6 +238,12 @@ fn row(verdict: &Verdict<'_>, rank: usize, ranked: &Ranked<'_>, diagonal: f64) -
     ]
 }
 
+/// A point to a hundredth of the diagonal, or a little better.
+fn coordinates(position: DVec3, diagonal: f64) -> String {
+    let digits = (2.5 - diagonal.log10()).ceil().clamp(0.0, 9.0) as usize;
+    position.to_array().map(|x| fixed(x, digits)).join(",")
+}
+
 /// A number in few digits; what is rounding is about 0.
 fn figure(x: f64) -> String {
     if x != 0.0 && x.abs() < ROUNDING { "~0".to_owned() } else { short(x) }
@@ -184,7 +266,8 @@ fn part(x: f64) -> String {
 
 fn kind(ranked: &Ranked<'_>) -> String {
     match ranked.subject {
-        Subject::Feature(feature) if ranked.kind() == Kind::ALL[1] => {
+        Subject::Feature(Feature { kind: FeatureKind::Seam, reversed: true, .. }) => "seam, flipped".to_owned(),
+        Subject::Feature(feature) if feature.kind == FeatureKind::SemiSharp => {
             let [least, most] = feature.sharpness;
             if least == most { format!("sharp {most}") } else { format!("sharp {least}-{most}") }
         }
@@ -228,7 +311,10 @@ impl Figures {
 fn name(subject: &Subject<'_>) -> String {
     match subject {
         Subject::Feature(feature) => match (&feature.chain, feature.line) {
-            (Some(chain), _) => chain_name(chain),
+            (Some(chain), _) => match feature.beside.first() {
+                Some(other) => format!("{} beside {}", chain_name(chain), chain_name(other)),
+                None => chain_name(chain),
+            },
             (None, Line::Edge([a, b])) => format!("{a}-{b}"),
             (None, Line::Spoke { face, corner }) => format!("face {face}, spoke {corner}"),
             (None, Line::Inside { ptex }) => format!("inside ptex {ptex}"),
