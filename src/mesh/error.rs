@@ -108,7 +108,11 @@ pub enum MeshError {
     Unreadable { at: Place, error: io::Error },
     #[error("{at}: to be read {needs}")]
     Memory { at: Place, needs: TooMuch },
-    #[error("{at}: only .obj, .usd, .usda, .usdc and .usdz are read; export the mesh as one of these")]
+    #[error("{at}: not a file that gzip wrote ({error}); pack it again, or give it unpacked")]
+    NotPacked { at: Place, error: io::Error },
+    #[error(
+        "{at}: only .obj, .usd, .usda, .usdc and .usdz are read, also with .gz behind; export the mesh as one of these"
+    )]
     UnsupportedFormat { at: Place },
     #[error("{at}: the file is empty; export the mesh again")]
     EmptyFile { at: Place },
@@ -136,6 +140,8 @@ pub enum MeshError {
     NoVertices { at: Place },
     #[error("{at}: the mesh has no faces; give a mesh with polygons, not points or curves alone")]
     NoFaces { at: Place },
+    #[error("{at}: the mesh has no {missing}, but {found}; give a mesh with polygons")]
+    NothingRead { at: Place, missing: &'static str, found: String },
     #[error(
         "{at}: {count} {what}, but OpenSubdiv's indices end at {limit}; split the mesh",
         limit = i32::MAX
@@ -147,6 +153,10 @@ pub enum MeshError {
     )]
     FaceSizesDisagree { at: Place, expected: u64, found: usize },
 
+    #[error(
+        "{at}: coordinate '{found}' is not a number, the program that wrote it {cause}; correct the vertex, or export the mesh again"
+    )]
+    CoordinateNoNumber { at: Place, found: String, cause: &'static str },
     #[error("{at}: coordinate {value} is not finite; correct the vertex")]
     CoordinateNotFinite { at: Place, value: f64 },
     #[error(

@@ -10,9 +10,11 @@
 //!   the first and turn its edges non-manifold.
 //! * The same edge or vertex sharpened more than once: the last one counts.
 
+use std::ops::Range;
+
 use super::error::{MeshError, Place, Spot};
-use super::polygon;
-use super::{Scheme, SubdivMesh};
+use super::{BadFace, Scheme, SubdivMesh};
+use super::{bad_faces, polygon};
 
 /// Largest number of edges at a vertex, and of vertices in a face: OpenSubdiv's `Vtr::VALENCE_LIMIT` (16-bit local
 /// indices).
@@ -29,6 +31,10 @@ pub(super) struct Lines {
     pub(super) creases: Vec<u32>,
     pub(super) corners: Vec<u32>,
     pub(super) holes: Vec<u32>,
+    /// Creases of each tag that may be a chain of vertices or pairs of them.
+    pub(super) chains: Vec<Range<usize>>,
+    /// Number of tags that were read as pairs.
+    pub(super) pairs: usize,
 }
 
 /// How the messages about a mesh name its parts.
@@ -54,6 +60,12 @@ enum Part {
 impl Source<'_> {
     fn whole(&self) -> Place {
         Place::with(self.name, Spot::Whole)
+    }
+
+    /// What is wrong with a face, as an error.
+    pub(super) fn fault(&self, bad: &BadFace) -> MeshError {
+        let spot = |face: usize| self.spot(Part::Face(face));
+        bad.fault.error(self.place(Part::Face(bad.face as usize)), self.first_vertex, spot)
     }
 
     fn spot(&self, part: Part) -> Spot {
@@ -100,6 +112,19 @@ pub(super) fn check(mesh: &SubdivMesh, source: &Source<'_>) -> Result<(), MeshEr
     check_faces(mesh, source)?;
     check_scheme(mesh, source)?;
     check_duplicates(mesh, source)?;
+    check_features(mesh, source)
+}
+
+/// As [`check`], of a mesh whose bad faces are left out: no face of it is there twice.
+pub(super) fn check_left_out(mesh: &SubdivMesh, source: &Source<'_>) -> Result<(), MeshError> {
+    check_counts(mesh, &source.whole())?;
+    check_points(mesh, source)?;
+    check_faces(mesh, source)?;
+    check_scheme(mesh, source)?;
+    check_features(mesh, source)
+}
+
+fn check_features(mesh: &SubdivMesh, source: &Source<'_>) -> Result<(), MeshError> {
     check_sharpness(mesh, source)?;
     check_creased_edges(mesh, source)?;
     check_holes(mesh, source)
@@ -211,38 +236,11 @@ fn check_valence(mesh: &SubdivMesh, vertex: u32, source: &Source<'_>) -> Result<
     Ok(())
 }
 
-/// A face as its smallest vertex and the one after it, where to find the rest, and its index.
-struct Turned<'a> {
-    key: [u32; 2],
-    face: &'a [u32],
-    start: usize,
-    index: usize,
-}
-
-impl<'a> Turned<'a> {
-    fn new((index, face): (usize, &'a [u32])) -> Self {
-        let start = (0..face.len()).min_by_key(|&k| face[k]).unwrap_or(0);
-        let key = [face[start], face[(start + 1) % face.len()]];
-        Self { key, face, start, index }
-    }
-
-    /// All vertices from the smallest one on, in the face's own direction.
-    fn vertices(&self) -> impl Iterator<Item = &u32> {
-        self.face[self.start..].iter().chain(&self.face[..self.start])
-    }
-}
-
 fn check_duplicates(mesh: &SubdivMesh, source: &Source<'_>) -> Result<(), MeshError> {
-    let mut turned: Vec<_> = mesh.faces().map(Turned::new).collect();
-    turned.sort_unstable_by(|a, b| {
-        a.key.cmp(&b.key).then_with(|| a.vertices().cmp(b.vertices())).then(a.index.cmp(&b.index))
-    });
-    let same = |a: &Turned<'_>, b: &Turned<'_>| a.key == b.key && a.vertices().eq(b.vertices());
-    let first = turned.windows(2).filter(|pair| same(&pair[0], &pair[1])).min_by_key(|pair| pair[1].index);
-    match first {
-        Some(pair) => Err(MeshError::DuplicateFace {
-            at: source.place(Part::Face(pair[1].index)),
-            original: source.spot(Part::Face(pair[0].index)),
+    match bad_faces::duplicates(mesh.faces()).first() {
+        Some(&[copy, original]) => Err(MeshError::DuplicateFace {
+            at: source.place(Part::Face(copy)),
+            original: source.spot(Part::Face(original)),
         }),
         None => Ok(()),
     }
@@ -257,7 +255,7 @@ fn check_scheme(mesh: &SubdivMesh, source: &Source<'_>) -> Result<(), MeshError>
             Some(face) => Err(MeshError::NotTriangle { at: at(face), size: mesh.face_sizes[face] as usize }),
             None => Ok(()),
         },
-        Scheme::None => match mesh.faces().find(|(_, face)| !polygon::is_convex(face, &mesh.points)) {
+        Scheme::None => match mesh.good_faces().find(|(_, face)| !polygon::is_convex(face, &mesh.points)) {
             Some((face, _)) => Err(MeshError::FaceConcave { at: at(face) }),
             None => Ok(()),
         },

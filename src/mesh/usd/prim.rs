@@ -5,8 +5,8 @@ use glam::{DMat4, DVec3};
 use super::instances;
 use super::scene::Placed;
 use super::value::Node;
-use crate::mesh::validate::{Source, check};
-use crate::mesh::{Boundary, Corner, Crease, MeshError, Scheme, SubdivMesh};
+use crate::mesh::validate::{Source, check_left_out};
+use crate::mesh::{Boundary, Corner, Crease, MeshError, Scheme, SubdivMesh, bad_faces};
 
 /// Whether the prim has no faces at all.
 pub(super) fn is_empty(node: &Node<'_>) -> Result<bool, MeshError> {
@@ -29,7 +29,7 @@ pub(super) struct Unplaced {
 
 /// Reads the mesh. What is wrong with faces and points shows when it is placed.
 pub(super) fn read(node: &Node<'_>) -> Result<Unplaced, MeshError> {
-    let mesh = SubdivMesh {
+    let mut mesh = SubdivMesh {
         name: node.source.to_owned(),
         points: node.required("points", node.points("points")?)?,
         face_sizes: node.required("faceVertexCounts", node.indices("faceVertexCounts")?)?,
@@ -42,6 +42,7 @@ pub(super) fn read(node: &Node<'_>) -> Result<Unplaced, MeshError> {
         ..SubdivMesh::default()
     };
     triangle_rule(node, &mesh)?;
+    bad_faces::leave_out(&mut mesh, None);
     Ok(Unplaced { mesh, is_left_handed: is_left_handed(node)? })
 }
 
@@ -57,7 +58,7 @@ impl Unplaced {
         let place = |point: &DVec3| if point.is_finite() { world.project_point3(*point) } else { *point };
         let moved = mesh.points.iter().map(place).collect();
         let local = std::mem::replace(&mut mesh.points, moved);
-        check(&mesh, &Source { name: &mesh.name, lines: None, first_vertex: 0 })?;
+        check_left_out(&mesh, &Source { name: &mesh.name, lines: None, first_vertex: 0 })?;
         // A transform that mirrors turns the inside out once more.
         if is_left_handed != (world.determinant() < 0.0) {
             turn(&mut mesh);

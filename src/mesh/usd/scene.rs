@@ -7,7 +7,7 @@ use glam::DMat4;
 use super::instances::{Extent, Originals};
 use crate::mesh::error::{Place, Spot};
 use crate::mesh::validate::check_counts;
-use crate::mesh::{Boundary, Corner, Crease, MeshError, Part, SubdivMesh};
+use crate::mesh::{BadFace, Boundary, Corner, Crease, MeshError, Part, SubdivMesh};
 
 /// Sharpness from which a vertex never decays.
 const INFINITE: f32 = 10.0;
@@ -83,7 +83,7 @@ fn common_rule(meshes: &[Placed]) -> Result<Boundary, MeshError> {
 /// Whether an edge has a single face.
 fn has_boundary(mesh: &SubdivMesh) -> bool {
     let mut faces_at = HashMap::new();
-    for (_, face) in mesh.faces() {
+    for (_, face) in mesh.good_faces() {
         for (k, &vertex) in face.iter().enumerate() {
             let next = face[(k + 1) % face.len()];
             *faces_at.entry([vertex.min(next), vertex.max(next)]).or_insert(0_u32) += 1;
@@ -97,6 +97,8 @@ fn sharpen_lone_vertices(mesh: &mut SubdivMesh) {
     for &vertex in &mesh.face_vertices {
         faces_at[vertex as usize] += 1;
     }
+    // Those of bad faces are there for no rule.
+    mesh.spare_vertices().iter().for_each(|&vertex| faces_at[vertex as usize] = 0);
     let lone = (0..).zip(&faces_at).filter(|(_, faces)| **faces == 1);
     mesh.corners.extend(lone.map(|(vertex, _)| Corner { vertex, sharpness: INFINITE }));
 }
@@ -111,4 +113,5 @@ fn append(scene: &mut SubdivMesh, mesh: SubdivMesh) {
     let corner = |Corner { vertex, sharpness }| Corner { vertex: vertex + points, sharpness };
     scene.corners.extend(mesh.corners.into_iter().map(corner));
     scene.holes.extend(mesh.holes.into_iter().map(|face| face + faces));
+    scene.bad_faces.extend(mesh.bad_faces.into_iter().map(|bad| BadFace { face: bad.face + faces, ..bad }));
 }

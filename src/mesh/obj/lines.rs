@@ -1,8 +1,10 @@
 //! Logical lines of a text file: comments cut off, continued lines joined, physical line numbers kept.
 
+use super::number;
+
 /// Lends one logical line after the other.
 ///
-/// A line ends with LF, CR LF or a lone CR. `#` starts a comment. A line whose last character (before a comment, there
+/// A line ends with LF, CR LF or a lone CR. `#` starts a comment, but for that of `-1.#IND` and its like. A line whose last character (before a comment, there
 /// is none after it) is `\` goes on in the next one. Only a continued line is copied.
 pub(super) struct LogicalLines<'a> {
     rest: &'a [u8],
@@ -48,8 +50,13 @@ impl<'a> LogicalLines<'a> {
         let end = self.rest.iter().position(is_end).unwrap_or(self.rest.len());
         let (line, tail) = self.rest.split_at(end);
         self.rest = tail.strip_prefix(b"\r\n").unwrap_or(tail.get(1..).unwrap_or_default());
-        Some(line.iter().position(|&b| b == b'#').map_or(line, |hash| &line[..hash]))
+        Some(without_comment(line))
     }
+}
+
+fn without_comment(line: &[u8]) -> &[u8] {
+    let mut hashes = (0..line.len()).filter(|&i| line[i] == b'#');
+    hashes.find(|&hash| !number::has_hash(line, hash)).map_or(line, |hash| &line[..hash])
 }
 
 /// The line without its final `\`, if it has one.
@@ -87,7 +94,20 @@ mod tests {
     }
 
     #[test]
+    fn a_hash_in_a_number_starts_no_comment() {
+        for text in ["v -1.#IND 0", "v 0 1.#QNAN0 1.#INF", "v 1.#J"] {
+            assert_eq!(all(text), expected(&[(1, text)]));
+            assert_eq!(all(&format!("{text}#IND")), expected(&[(1, text)]));
+        }
+        for text in ["f 1 2 3.", "f 1 2 x1."] {
+            assert_eq!(all(&format!("{text}#Indeed")), expected(&[(1, text)]));
+        }
+        assert_eq!(all("usemtl a.#IND"), expected(&[(1, "usemtl a.")]));
+    }
+
+    #[test]
     fn a_comment_ends_the_line_and_does_not_continue() {
+        assert_eq!(all("v 1#x\nf 1. #2"), expected(&[(1, "v 1"), (2, "f 1. ")]));
         assert_eq!(all("v 1 # x \\\n# C:\\\nw"), expected(&[(1, "v 1 "), (2, ""), (3, "w")]));
     }
 }
