@@ -26,7 +26,7 @@ pub(crate) fn count(number: usize, noun: &str) -> String {
     format!("{number} {}", counted(number, noun))
 }
 
-/// A noun as it stands after a number.
+/// A noun as it stands after a number. It is given in the singular.
 pub(crate) fn counted(number: usize, noun: &str) -> Cow<'_, str> {
     match number {
         1 => noun.into(),

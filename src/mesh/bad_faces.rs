@@ -84,13 +84,9 @@ impl SubdivMesh {
 
 /// Leaves the bad faces of a mesh out, and with them the creases on edges that only they have. `lines` follow the creases.
 ///
-/// The mesh needs no validation before. What is wrong otherwise is left to it: face sizes that do not add up, vertices that are not
-/// there.
+/// All vertices that faces, creases and corners name must be there ([`check_indices`](super::validate::check_indices)): those of the bad
+/// faces come behind them.
 pub(super) fn leave_out(mesh: &mut SubdivMesh, lines: Option<&mut Lines>) {
-    let sizes: u64 = mesh.face_sizes.iter().map(|&size| u64::from(size)).sum();
-    if mesh.points.is_empty() || sizes != mesh.face_vertices.len() as u64 {
-        return;
-    }
     mesh.bad_faces = find(mesh);
     if mesh.bad_faces.is_empty() {
         return;
@@ -100,16 +96,13 @@ pub(super) fn leave_out(mesh: &mut SubdivMesh, lines: Option<&mut Lines>) {
     mesh.holes.extend(mesh.bad_faces.iter().map(|bad| bad.face));
 }
 
-/// All bad faces, in their order. A face with a vertex that is not there counts as good.
+/// All bad faces, in their order.
 fn find(mesh: &SubdivMesh) -> Vec<BadFace> {
     let bad = |face: usize, fault: Fault| BadFace { face: face as u32, fault, creases: 0 };
     // The face that used a vertex last, plus one: finds a repetition without comparing all pairs.
     let mut last_face = vec![0_u32; mesh.points.len()];
     let mut found = Vec::new();
     for (face, vertices) in mesh.faces() {
-        if vertices.iter().any(|&vertex| vertex as usize >= last_face.len()) {
-            continue;
-        }
         if vertices.len() < 3 {
             found.push(bad(face, Fault::TooSmall { size: vertices.len() as u32 }));
             continue;
@@ -241,16 +234,14 @@ pub(super) fn note(
     if is_strict || left_out == faces {
         return Err(error);
     }
-    let are = if left_out == 1 { "is a hole" } else { "are holes" };
+    let are =
+        if left_out == 1 { "is left out of the surface, as a hole" } else { "are left out of the surface, as holes" };
     let creases: u32 = mesh.bad_faces.iter().map(|bad| bad.creases).sum();
     let with = match creases {
         0 => String::new(),
-        _ => format!(", left out with {} on edges that no other face has", count(creases as usize, "crease")),
+        _ => format!(", with {} on edges that no other face has", count(creases as usize, "crease")),
     };
     let first = if left_out == 1 { "" } else { "the first: " };
-    mesh.notes.push(format!(
-        "{left_out} of {} {are}, being no part of a surface{with}; {first}{error}",
-        count(faces, "face")
-    ));
+    mesh.notes.push(format!("{left_out} of {} {are}{with}; {first}{error}", count(faces, "face")));
     Ok(())
 }

@@ -6,6 +6,7 @@ use std::path::Path;
 
 use thiserror::Error;
 
+use crate::line::count;
 use crate::memory::TooMuch;
 
 use super::validate::{MAX_COORDINATE, MAX_VALENCE};
@@ -140,7 +141,7 @@ pub enum MeshError {
     NoVertices { at: Place },
     #[error("{at}: the mesh has no faces; give a mesh with polygons, not points or curves alone")]
     NoFaces { at: Place },
-    #[error("{at}: the mesh has no {missing}, but {found}; give a mesh with polygons")]
+    #[error("{at}: the mesh has no {missing}, but {found}, which is not read; give a mesh with polygons")]
     NothingRead { at: Place, missing: &'static str, found: String },
     #[error(
         "{at}: {count} {what}, but OpenSubdiv's indices end at {limit}; split the mesh",
@@ -215,7 +216,7 @@ pub enum MeshError {
     TagWithoutHeader { at: Place },
     #[error("{at}: tag '{name}' is unknown; use crease, corner, hole, interpolateboundary, creasemethod or scheme")]
     UnknownTag { at: Place, name: String },
-    #[error("{at}: the {name} tag announces {announced} values and has {found}; correct its counts")]
+    #[error("{at}: the {name} tag announces {} and has {found}; correct its counts", count(*.announced, "value"))]
     TagCountMismatch { at: Place, name: String, announced: usize, found: usize },
     #[error("{at}: the {name} tag has {ints}/{floats}/{strings} ints/floats/strings; it takes {expected}")]
     TagShape { at: Place, name: &'static str, ints: usize, floats: usize, strings: usize, expected: &'static str },
@@ -251,7 +252,7 @@ pub enum MeshError {
     AttributeType { at: Place, name: String, expected: &'static str },
     #[error("{at}: {name} has {value}; use 0 and above")]
     AttributeNegative { at: Place, name: &'static str, value: i32 },
-    #[error("{at}: {name} has {found} values; write {expected}")]
+    #[error("{at}: {name} has {}; write {expected}", count(*.found, "value"))]
     AttributeLength { at: Place, name: &'static str, found: usize, expected: String },
     #[error("{at}: creaseLengths has {length}; a crease has at least 2 vertices")]
     CreaseTooShort { at: Place, length: u32 },

@@ -107,7 +107,7 @@ impl SubdivMesh {
 
 /// As [`SubdivMesh::validate`], with places as the source names them.
 pub(super) fn check(mesh: &SubdivMesh, source: &Source<'_>) -> Result<(), MeshError> {
-    check_counts(mesh, &source.whole())?;
+    check_indices(mesh, source)?;
     check_points(mesh, source)?;
     check_faces(mesh, source)?;
     check_scheme(mesh, source)?;
@@ -115,7 +115,7 @@ pub(super) fn check(mesh: &SubdivMesh, source: &Source<'_>) -> Result<(), MeshEr
     check_features(mesh, source)
 }
 
-/// As [`check`], of a mesh whose bad faces are left out: no face of it is there twice.
+/// As [`check`], of a mesh that passed [`check_indices`] and whose bad faces are left out then: no face of it is there twice.
 pub(super) fn check_left_out(mesh: &SubdivMesh, source: &Source<'_>) -> Result<(), MeshError> {
     check_counts(mesh, &source.whole())?;
     check_points(mesh, source)?;
@@ -128,6 +128,32 @@ fn check_features(mesh: &SubdivMesh, source: &Source<'_>) -> Result<(), MeshErro
     check_sharpness(mesh, source)?;
     check_creased_edges(mesh, source)?;
     check_holes(mesh, source)
+}
+
+/// Whether faces, creases and corners name vertices that are there: what [`bad_faces::leave_out`] asks for.
+pub(super) fn check_indices(mesh: &SubdivMesh, source: &Source<'_>) -> Result<(), MeshError> {
+    check_counts(mesh, &source.whole())?;
+    let count = mesh.points.len();
+    let first = source.first_vertex;
+    for (i, face) in mesh.faces() {
+        if let Some(&vertex) = face.iter().find(|&&vertex| vertex as usize >= count) {
+            let (vertex, last) = (u64::from(vertex) + first, count as u64 - 1 + first);
+            return Err(MeshError::VertexOutOfRange { at: source.place(Part::Face(i)), vertex, first, last });
+        }
+    }
+    let last = count as u64 - 1;
+    for (i, crease) in mesh.creases.iter().enumerate() {
+        if let Some(&vertex) = crease.vertices.iter().find(|&&v| v as usize >= count) {
+            return Err(MeshError::CreaseOutOfRange { at: source.place(Part::Crease(i)), vertex, last });
+        }
+    }
+    match mesh.corners.iter().position(|corner| corner.vertex as usize >= count) {
+        Some(i) => {
+            let at = source.place(Part::Corner(i));
+            Err(MeshError::CornerOutOfRange { at, vertex: mesh.corners[i].vertex, last })
+        }
+        None => Ok(()),
+    }
 }
 
 /// Whether the numbers of vertices and faces agree, and OpenSubdiv can count them.
@@ -174,7 +200,6 @@ fn check_points(mesh: &SubdivMesh, source: &Source<'_>) -> Result<(), MeshError>
 
 fn check_faces(mesh: &SubdivMesh, source: &Source<'_>) -> Result<(), MeshError> {
     let count = mesh.points.len();
-    let first = source.first_vertex;
     // The face that used a vertex last, plus one: finds a repetition without comparing all pairs.
     let mut last_face = vec![0_u32; count];
     let mut faces_at = vec![0_u32; count];
@@ -190,13 +215,10 @@ fn check_faces(mesh: &SubdivMesh, source: &Source<'_>) -> Result<(), MeshError> 
         }
         stamp += 1;
         for &vertex in face {
-            let shown = u64::from(vertex) + first;
-            let Some(last) = last_face.get_mut(vertex as usize) else {
-                let last = count as u64 - 1 + first;
-                return Err(MeshError::VertexOutOfRange { at: at(), vertex: shown, first, last });
-            };
+            let last = &mut last_face[vertex as usize];
             if *last == stamp {
-                return Err(MeshError::RepeatedVertex { at: at(), vertex: shown });
+                let vertex = u64::from(vertex) + source.first_vertex;
+                return Err(MeshError::RepeatedVertex { at: at(), vertex });
             }
             *last = stamp;
             faces_at[vertex as usize] += 1;
@@ -263,26 +285,16 @@ fn check_scheme(mesh: &SubdivMesh, source: &Source<'_>) -> Result<(), MeshError>
 }
 
 fn check_sharpness(mesh: &SubdivMesh, source: &Source<'_>) -> Result<(), MeshError> {
-    let count = mesh.points.len();
-    let last = count as u64 - 1;
     for (i, crease) in mesh.creases.iter().enumerate() {
         let at = || source.place(Part::Crease(i));
         let [a, b] = crease.vertices;
-        if let Some(&vertex) = crease.vertices.iter().find(|&&v| v as usize >= count) {
-            return Err(MeshError::CreaseOutOfRange { at: at(), vertex, last });
-        }
         if a == b {
             return Err(MeshError::CreaseOnOneVertex { at: at(), vertex: a });
         }
         check_sharpness_value(crease.sharpness, at)?;
     }
     for (i, corner) in mesh.corners.iter().enumerate() {
-        let at = || source.place(Part::Corner(i));
-        let vertex = corner.vertex;
-        if vertex as usize >= count {
-            return Err(MeshError::CornerOutOfRange { at: at(), vertex, last });
-        }
-        check_sharpness_value(corner.sharpness, at)?;
+        check_sharpness_value(corner.sharpness, || source.place(Part::Corner(i)))?;
     }
     Ok(())
 }

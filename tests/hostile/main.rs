@@ -1,6 +1,8 @@
 //! What goes wrong outside: files that end too early, disks that are full, folders that are locked, signals, odd arguments.
 //! One line and exit code 2, and every file whole.
 
+mod inputs;
+mod mutated;
 #[cfg(unix)]
 mod streams;
 mod truncated;

@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod bad_faces;
 mod blender;
 mod corrupt;
 mod fixtures;

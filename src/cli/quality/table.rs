@@ -1,6 +1,7 @@
 //! The verdict as text: a summary, and a list in columns.
 
 use super::Verdict;
+use crate::line::count;
 use crate::quality::{Break, Chain, Extremes, Kind, Line, LineBreak, Ranked, Spot, Subject, Unjudged, Vertex};
 use crate::statistics::{exact, short};
 use std::fmt::Write;
@@ -27,13 +28,13 @@ const ROUNDING: f64 = 1e-9;
 
 type Row = [String; COLUMNS.len()];
 
-/// The summary, the worst `count` of the list and the verdict.
-pub(super) fn text(verdict: &Verdict<'_>, count: usize) -> String {
+/// The summary, the worst `most` of the list and the verdict.
+pub(super) fn text(verdict: &Verdict<'_>, most: usize) -> String {
     let mut out = summary(verdict);
     let diagonal = verdict.mesh.diagonal();
     let all = verdict.judged().count();
     let rows: Vec<Row> =
-        verdict.judged().take(count).enumerate().map(|(i, ranked)| row(verdict, i + 1, ranked, diagonal)).collect();
+        verdict.judged().take(most).enumerate().map(|(i, ranked)| row(verdict, i + 1, ranked, diagonal)).collect();
     if !rows.is_empty() {
         out.push('\n');
         out += &aligned(&rows);
@@ -53,6 +54,7 @@ pub(super) fn text(verdict: &Verdict<'_>, count: usize) -> String {
     let over = verdict.over();
     let _ = match over {
         0 => writeln!(out, "\npass: none of {all} is over its limits"),
+        1 => writeln!(out, "\nFAIL: 1 of {all} over its limits"),
         _ => writeln!(out, "\nFAIL: {over} of {all} over their limits"),
     };
     out
@@ -61,32 +63,34 @@ pub(super) fn text(verdict: &Verdict<'_>, count: usize) -> String {
 fn summary(verdict: &Verdict<'_>) -> String {
     let quality = verdict.quality;
     let mut out = String::new();
-    let kinds = [("creases", Kind::ALL[0]), ("semi-sharp creases", Kind::ALL[1]), ("vertices", Kind::ALL[3])];
+    let kinds = [("crease", Kind::ALL[0]), ("semi-sharp crease", Kind::ALL[1]), ("vertex", Kind::ALL[3])];
     let counts = kinds.map(|(name, kind)| {
         let of: Vec<&Ranked<'_>> = verdict.ranked.iter().filter(|ranked| ranked.kind() == kind).collect();
         let over = of.iter().filter(|ranked| ranked.is_over()).count();
         let ignored = if verdict.ignored.iter().any(|i| i.kind() == kind) { ", ignored" } else { "" };
-        format!("{} {name} ({over} over{ignored})", of.len())
+        format!("{} ({over} over{ignored})", count(of.len(), name))
     });
     let _ = writeln!(out, "{}: {}", verdict.mesh.name, counts.join(", "));
     let Extremes { samples, gap, angle_deg, difference, .. } = quality.smooth;
     let broken = verdict.ranked.iter().filter(|ranked| ranked.kind() == Kind::ALL[2]).count();
     let _ = writeln!(
         out,
-        "{} smooth joints at {samples} points ({broken} lines over): gap {}, angle {}, curvature {}",
-        quality.smooth_joints,
+        "{} at {} ({} over): gap {}, angle {}, curvature {}",
+        count(quality.smooth_joints, "smooth joint"),
+        count(samples, "point"),
+        count(broken, "line"),
         short(gap * verdict.limits.gap_unit()),
         angle_deg.map_or("-".to_owned(), short),
         difference.map_or("-".to_owned(), |difference| short(100.0 * difference) + " %"),
     );
     let Unjudged { edges_without_surface, nonmanifold_edges, nonmanifold_vertices } = &quality.unjudged;
-    for (count, [one, many], why) in [
-        (edges_without_surface.len(), ["edge", "edges"], "without surfaces on two sides (boundary rule none)"),
-        (nonmanifold_edges.len(), ["edge", "edges"], "not manifold"),
-        (nonmanifold_vertices.len(), ["vertex", "vertices"], "not manifold: sheets that share no edge meet there"),
+    for (unjudged, what, why) in [
+        (edges_without_surface.len(), "edge", "without surfaces on two sides (boundary rule none)"),
+        (nonmanifold_edges.len(), "edge", "not manifold"),
+        (nonmanifold_vertices.len(), "vertex", "not manifold: sheets that share no edge meet there"),
     ] {
-        if count > 0 {
-            let _ = writeln!(out, "{count} {} not judged: {why}", if count == 1 { one } else { many });
+        if unjudged > 0 {
+            let _ = writeln!(out, "{} not judged: {why}", count(unjudged, what));
         }
     }
     let limits = &verdict.limits;
@@ -240,8 +244,7 @@ fn name(subject: &Subject<'_>) -> String {
                 Spot::Middle([a, b]) => format!("middle of {a}-{b}"),
                 Spot::Inside(ptex) => format!("inside ptex {ptex}"),
             };
-            let faces = if *faces == 1 { "1 face".to_owned() } else { format!("{faces} faces") };
-            format!("{spot} {}, {faces}", kind.name())
+            format!("{spot} {}, {}", kind.name(), count(*faces, "face"))
         }
     }
 }

@@ -18,7 +18,7 @@ use std::path::Path;
 use glam::DVec3;
 
 use super::error::{MeshError, Place, Spot, quote};
-use super::validate::{Lines, Source, check_left_out};
+use super::validate::{Lines, Source, check_indices, check_left_out};
 use super::{Boundary, Crease, SubdivMesh, bad_faces, packed};
 use crate::line::count;
 use lines::LogicalLines;
@@ -91,9 +91,11 @@ impl Reader<'_> {
             let at = Place::with(self.source, Spot::Whole);
             return Err(MeshError::NothingRead { at, missing, found: self.passed.to_string() });
         }
+        let name = self.source;
+        check_indices(&self.mesh, &Source { name, lines: Some(&self.lines), first_vertex: 1 })?;
         tags::read_pairs(&mut self.mesh, &mut self.lines);
         bad_faces::leave_out(&mut self.mesh, Some(&mut self.lines));
-        let source = Source { name: self.source, lines: Some(&self.lines), first_vertex: 1 };
+        let source = Source { name, lines: Some(&self.lines), first_vertex: 1 };
         check_left_out(&self.mesh, &source)?;
         bad_faces::note(&mut self.mesh, is_strict, |_, bad| source.fault(bad))?;
         if self.edge_creases > 0 {

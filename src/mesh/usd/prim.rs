@@ -5,7 +5,7 @@ use glam::{DMat4, DVec3};
 use super::instances;
 use super::scene::Placed;
 use super::value::Node;
-use crate::mesh::validate::{Source, check_left_out};
+use crate::mesh::validate::{Source, check_indices, check_left_out};
 use crate::mesh::{Boundary, Corner, Crease, MeshError, Scheme, SubdivMesh, bad_faces};
 
 /// Whether the prim has no faces at all.
@@ -27,7 +27,7 @@ pub(super) struct Unplaced {
     is_left_handed: bool,
 }
 
-/// Reads the mesh. What is wrong with faces and points shows when it is placed.
+/// Reads the mesh, its bad faces left out. What else is wrong with faces and points shows when it is placed.
 pub(super) fn read(node: &Node<'_>) -> Result<Unplaced, MeshError> {
     let mut mesh = SubdivMesh {
         name: node.source.to_owned(),
@@ -42,6 +42,7 @@ pub(super) fn read(node: &Node<'_>) -> Result<Unplaced, MeshError> {
         ..SubdivMesh::default()
     };
     triangle_rule(node, &mesh)?;
+    check_indices(&mesh, &Source { name: &mesh.name, lines: None, first_vertex: 0 })?;
     bad_faces::leave_out(&mut mesh, None);
     Ok(Unplaced { mesh, is_left_handed: is_left_handed(node)? })
 }
