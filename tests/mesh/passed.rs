@@ -32,6 +32,8 @@ fn everything_else_is_told_with_its_count() {
     );
     assert_eq!(note("lod 3\nbevel on\n"), "passed over: display attributes (1 lod, 1 bevel)");
     assert_eq!(note("fa 1 2 3\nF 1 2 3\nfa 1 2 3\n"), "passed over: unknown keywords (2 fa, 1 F, the first in line 6)");
+    let comments = "# crease 1 2 3.5\n# crease 2 3 1\n# creases are below\n";
+    assert_eq!(note(comments), "passed over: comments that say creases (2 # crease, the first in line 6)");
     // Continued lines are one statement; what is told is printable.
     assert_eq!(note("l 1 2 \\\n 3 \\\n 4\n"), "passed over: lines (1 l)");
     assert_eq!(note("\u{1b}[31m\u{7} 1\n"), "passed over: unknown keywords (1 \\u{1b}[31m\\u{7}, the first in line 6)");

@@ -10,11 +10,13 @@ pub(super) struct LogicalLines<'a> {
     rest: &'a [u8],
     number: u32,
     joined: Vec<u8>,
+    /// Number of comments so far that say what a crease would, and the line of the first.
+    pub(super) crease_comments: (usize, u32),
 }
 
 impl<'a> LogicalLines<'a> {
     pub(super) fn new(text: &'a [u8]) -> Self {
-        Self { rest: text, number: 0, joined: Vec::new() }
+        Self { rest: text, number: 0, joined: Vec::new(), crease_comments: (0, 0) }
     }
 
     /// The next logical line and the number, from 1, of the physical line it starts on.
@@ -50,13 +52,28 @@ impl<'a> LogicalLines<'a> {
         let end = self.rest.iter().position(is_end).unwrap_or(self.rest.len());
         let (line, tail) = self.rest.split_at(end);
         self.rest = tail.strip_prefix(b"\r\n").unwrap_or(tail.get(1..).unwrap_or_default());
-        Some(without_comment(line))
+        let (line, comment) = without_comment(line);
+        if is_crease(comment) {
+            let (count, first) = self.crease_comments;
+            self.crease_comments = (count + 1, if count == 0 { self.number } else { first });
+        }
+        Some(line)
     }
 }
 
-fn without_comment(line: &[u8]) -> &[u8] {
+/// A line, and the comment behind it with its `#`.
+fn without_comment(line: &[u8]) -> (&[u8], &[u8]) {
     let mut hashes = (0..line.len()).filter(|&i| line[i] == b'#');
-    hashes.find(|&hash| !number::has_hash(line, hash)).map_or(line, |hash| &line[..hash])
+    line.split_at(hashes.find(|&hash| !number::has_hash(line, hash)).unwrap_or(line.len()))
+}
+
+/// Whether a comment is the word crease and three numbers or more, as some programs write creases.
+fn is_crease(comment: &[u8]) -> bool {
+    let text = comment.trim_ascii_start().strip_prefix(b"#").unwrap_or_default().trim_ascii_start();
+    let Some((word, numbers)) = text.split_at_checked(6) else { return false };
+    let is_number = |token: &str| token.parse::<f64>().is_ok();
+    let tokens = || std::str::from_utf8(numbers).unwrap_or("x").split_ascii_whitespace();
+    word.eq_ignore_ascii_case(b"crease") && tokens().count() >= 3 && tokens().all(is_number)
 }
 
 /// The line without its final `\`, if it has one.
@@ -103,6 +120,14 @@ mod tests {
             assert_eq!(all(&format!("{text}#Indeed")), expected(&[(1, text)]));
         }
         assert_eq!(all("usemtl a.#IND"), expected(&[(1, "usemtl a.")]));
+    }
+
+    #[test]
+    fn comments_that_say_creases_are_counted() {
+        let text = "# crease 1 2 3.5\nv 1 # Crease: 1 2 3\nf 1 #crease 2 3 1 0\n# crease edges below\n# crease 1 2\n#CREASE 1 2 3";
+        let mut lines = LogicalLines::new(text.as_bytes());
+        while lines.next().is_some() {}
+        assert_eq!(lines.crease_comments, (3, 1));
     }
 
     #[test]

@@ -67,6 +67,7 @@ pub(super) fn parse(text: &[u8], source: &str, name: &str, is_strict: bool) -> R
     while let Some((number, line)) = lines.next() {
         reader.line(number, line)?;
     }
+    reader.passed.count_comments(lines.crease_comments);
     reader.finish(is_strict)
 }
 

@@ -20,12 +20,21 @@ enum Kind {
     Files,
     Commands,
     Display,
+    Comments,
     Unknown,
 }
 
 impl Kind {
-    const ALL: [Self; 7] =
-        [Self::FreeForm, Self::Lines, Self::Points, Self::Files, Self::Commands, Self::Display, Self::Unknown];
+    const ALL: [Self; 8] = [
+        Self::FreeForm,
+        Self::Lines,
+        Self::Points,
+        Self::Files,
+        Self::Commands,
+        Self::Display,
+        Self::Comments,
+        Self::Unknown,
+    ];
 
     /// The kind of a keyword of the format's version 3.0, with those that it supersedes; `None` for what everybody writes and
     /// what changes no surface: texture coordinates, normals, groups, objects, smoothing groups and materials.
@@ -54,6 +63,7 @@ impl Kind {
             Self::Files => "other files",
             Self::Commands => "commands",
             Self::Display => "display attributes",
+            Self::Comments => "comments that say creases",
             Self::Unknown => "unknown keywords",
         }
     }
@@ -90,6 +100,13 @@ impl Passed {
         }
     }
 
+    /// Counts comments that say creases; they are first in a line.
+    pub(super) fn count_comments(&mut self, (count, line): (usize, u32)) {
+        if count > 0 {
+            self.keywords.push(Keyword { name: "# crease".to_owned(), kind: Kind::Comments, count, line });
+        }
+    }
+
     pub(super) fn is_empty(&self) -> bool {
         self.keywords.is_empty()
     }
@@ -109,7 +126,7 @@ impl fmt::Display for Passed {
                 _ if more > 0 => write!(f, " and {more} of others")?,
                 _ => {}
             }
-            if kind == Kind::Unknown {
+            if matches!(kind, Kind::Comments | Kind::Unknown) {
                 write!(f, ", the first in line {}", first.line)?;
             }
             write!(f, ")")?;
