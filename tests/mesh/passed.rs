@@ -85,9 +85,6 @@ fn crease_tags_of_pairs() {
     // Vertices 1 and 5 share no edge.
     let mesh = with("t crease 4/1/0 0 1 5 2 3");
     assert_eq!((mesh.creases, &mesh.notes[..]), (creases(&[([0, 1], 3.0), ([5, 2], 3.0)]), &[pairs.to_owned()][..]));
-    // A sharpness for each pair.
-    let mesh = with("t crease 4/2/0 0 1 2 3 1 2");
-    assert_eq!((mesh.creases, &mesh.notes[..]), (creases(&[([0, 1], 1.0), ([2, 3], 2.0)]), &[pairs.to_owned()][..]));
     // Where both make sense it is a chain.
     let mesh = with("t crease 4/1/0 0 1 2 3 3");
     assert_eq!(mesh.creases, creases(&[([0, 1], 3.0), ([1, 2], 3.0), ([2, 3], 3.0)]));

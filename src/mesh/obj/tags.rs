@@ -5,7 +5,7 @@
 //!
 //! | tag | values |
 //! |---|---|
-//! | `crease` | a chain of n + 1 vertices, whose n edges get one sharpness or n; or n pairs of vertices |
+//! | `crease` | a chain of n + 1 vertices, whose n edges get one sharpness or n; or pairs of vertices with one sharpness |
 //! | `corner` | n vertices with one sharpness or n |
 //! | `hole` | faces |
 //! | `interpolateboundary` | 0 none, 1 edge and corner, 2 edge only |
@@ -14,9 +14,9 @@
 //! | `smoothtriangles` | `catmark`; `smooth` would change the surface and is refused |
 //! | `facevaryinginterpolateboundary`, `facevaryingpropagatecorners` | ignored: there is no face-varying data here |
 //!
-//! OpenSubdiv's own shape reader takes the vertices of a `crease` in pairs, RenderMan (which defined the tag) as a chain. The two agree
-//! for one edge a tag, as in all of OpenSubdiv's shapes. Where they differ, a tag is pairs if it has a sharpness for each pair, or
-//! if all pairs are edges of the mesh and the chain has a link that is none ([`read_pairs`]).
+//! OpenSubdiv's own shape reader takes the vertices of a `crease` in pairs (`assignComponentTags` in regression/common/far_utils.h),
+//! RenderMan (which defined the tag) as a chain. The two agree for one edge a tag, as in all of OpenSubdiv's shapes. Where they differ,
+//! a tag with one sharpness is pairs if all pairs are edges of the mesh and the chain has a link that is none ([`read_pairs`]).
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -118,19 +118,9 @@ fn read_counts(token: &[u8]) -> Option<[usize; 3]> {
 impl<F: Fn() -> Place> Tag<'_, F> {
     fn crease(&self, mesh: &mut SubdivMesh, lines: &mut Lines) -> Result<(), MeshError> {
         let (ints, floats) = (self.values.ints.len(), self.values.floats.len());
-        let is_pairs = floats > 1 && floats * 2 == ints;
-        let edges = if is_pairs { floats } else { ints.saturating_sub(1) };
+        let edges = ints.saturating_sub(1);
         let expected = "a chain of 2 ints or more, and one float or one an edge";
         self.expect_sharpness("crease", edges, expected)?;
-        if is_pairs {
-            for (k, pair) in self.values.ints.chunks_exact(2).enumerate() {
-                let vertices = [self.index("crease", pair[0])?, self.index("crease", pair[1])?];
-                mesh.creases.push(Crease { vertices, sharpness: self.sharpness(k)? });
-                lines.creases.push(self.line);
-            }
-            lines.pairs += 1;
-            return Ok(());
-        }
         if floats == 1 && ints > 2 && ints.is_multiple_of(2) {
             lines.chains.push(mesh.creases.len()..mesh.creases.len() + edges);
         }
