@@ -5,8 +5,8 @@ use std::borrow::Cow;
 /// Characters beyond which a message is cut.
 const LONGEST: usize = 700;
 
-/// The text with control characters as escapes, cut in its middle where it is very long: what is wrong stands first, and what to do
-/// last.
+/// The text with control characters as escapes, cut in its middle where it is very long: what is wrong stands first,
+/// and what to do last.
 pub(crate) fn printable(text: &str) -> String {
     let mut line = String::with_capacity(text.len());
     for c in text.chars() {

@@ -1,10 +1,10 @@
 //! Faces that cannot be part of a surface: they are left out, and keep their places.
 //!
-//! OpenSubdiv crashes on a face that names a vertex twice, and takes a face that is there twice without a word. Files have such
-//! faces all the same (collapsed quads, objects that were pasted twice), and a scene with thousands of good faces is still worth
-//! looking at. So the readers replace each by a polygon of the same size on vertices of its own, at the same coordinates and
-//! behind the vertices of the file, and make it a hole. Faces and ptex faces are numbered as in the file then, and the edges of a
-//! bad face are not those of its neighbours.
+//! OpenSubdiv crashes on a face that names a vertex twice, and takes a face that is there twice without a word. Files
+//! have such faces all the same (collapsed quads, objects that were pasted twice), and a scene with thousands of good
+//! faces is still worth looking at. So the readers replace each by a polygon of the same size on vertices of its own,
+//! at the same coordinates and behind the vertices of the file, and make it a hole. Faces and ptex faces are numbered
+//! as in the file then, and the edges of a bad face are not those of its neighbours.
 
 use std::collections::{HashMap, HashSet};
 
@@ -45,8 +45,8 @@ pub enum Fault {
 }
 
 impl Fault {
-    /// The fault as an error: of a face at `at`, in a source whose first vertex has the number `first_vertex` and whose faces are
-    /// where `spot` says.
+    /// The fault as an error: of a face at `at`, in a source whose first vertex has the number `first_vertex` and whose
+    /// faces are where `spot` says.
     pub(super) fn error(self, at: Place, first_vertex: u64, spot: impl Fn(usize) -> Spot) -> MeshError {
         match self {
             Self::TooSmall { size } => MeshError::FaceTooSmall { at, size: size as usize },
@@ -82,10 +82,11 @@ impl SubdivMesh {
     }
 }
 
-/// Leaves the bad faces of a mesh out, and with them the creases on edges that only they have. `lines` follow the creases.
+/// Leaves the bad faces of a mesh out, and with them the creases on edges that only they have. `lines` follow the
+/// creases.
 ///
-/// All vertices that faces, creases and corners name must be there ([`check_indices`](super::validate::check_indices)): those of the bad
-/// faces come behind them.
+/// All vertices that faces, creases and corners name must be there ([`check_indices`](super::validate::check_indices)):
+/// those of the bad faces come behind them.
 pub(super) fn leave_out(mesh: &mut SubdivMesh, lines: Option<&mut Lines>) {
     mesh.bad_faces = find(mesh);
     if mesh.bad_faces.is_empty() {
@@ -141,8 +142,8 @@ impl<'a> Turned<'a> {
     }
 }
 
-/// Faces with the vertices of an earlier one in the same cyclic order, each with the first such face; in ascending order. No face
-/// may be empty.
+/// Faces with the vertices of an earlier one in the same cyclic order, each with the first such face; in ascending
+/// order. No face may be empty.
 pub(super) fn duplicates<'a>(faces: impl Iterator<Item = (usize, &'a [u32])>) -> Vec<[usize; 2]> {
     let mut turned: Vec<_> = faces.map(Turned::new).collect();
     turned.sort_unstable_by(|a, b| {
@@ -179,8 +180,11 @@ fn leave_creases_out(mesh: &mut SubdivMesh, lines: Option<&mut Lines>) {
     mesh.good_faces().flat_map(|(_, face)| edges(face)).for_each(|edge| _ = lost.remove(&edge));
     let mut keep = Vec::with_capacity(mesh.creases.len());
     for crease in &mesh.creases {
-        let lost = lost.get_mut(&ordered(crease.vertices)).map(|creases| *creases += 1);
-        keep.push(lost.is_none());
+        let creases = lost.get_mut(&ordered(crease.vertices));
+        keep.push(creases.is_none());
+        if let Some(creases) = creases {
+            *creases += 1;
+        }
     }
     let count = |face: &&[u32]| edges(face).filter_map(|edge| lost.remove(&edge)).sum();
     let counts: Vec<u32> = bad.iter().map(count).collect();
@@ -196,7 +200,8 @@ fn retain<T>(items: &mut Vec<T>, keep: &[bool]) {
     items.retain(|_| keep.next().copied().unwrap_or(true));
 }
 
-/// Gives each bad face vertices that no other face has, where its own are. One with less than three gets the last of them again.
+/// Gives each bad face vertices that no other face has, where its own are. One with less than three gets the last of
+/// them again.
 fn give_own_vertices(mesh: &mut SubdivMesh) {
     let mut points = std::mem::take(&mut mesh.points);
     let mut sizes = Vec::with_capacity(mesh.face_sizes.len());

@@ -1,4 +1,5 @@
-//! Meshes as people have them: with bad faces, with what is not read, packed, or by standard input. A line says what was left out.
+//! Meshes as people have them: with bad faces, with what is not read, packed, or by standard input. A line says what
+//! was left out.
 
 use super::{Folder, mesh, refusal};
 use std::io::Write;

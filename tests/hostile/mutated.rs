@@ -1,4 +1,5 @@
-//! OBJ files with errors that hands and programs make: whatever the text says, there is an answer or one line, and no panic.
+//! OBJ files with errors that hands and programs make: whatever the text says, there is an answer or one line, and no
+//! panic.
 
 use super::{Folder, mesh};
 use catoptric::curves;

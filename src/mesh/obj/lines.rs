@@ -4,8 +4,9 @@ use super::number;
 
 /// Lends one logical line after the other.
 ///
-/// A line ends with LF, CR LF or a lone CR. `#` starts a comment, but for that of `-1.#IND` and its like. A line whose last character (before a comment, there
-/// is none after it) is `\` goes on in the next one. Only a continued line is copied.
+/// A line ends with LF, CR LF or a lone CR. `#` starts a comment, but for that of `-1.#IND` and its like. A line whose
+/// last character (before a comment, there is none after it) is `\` goes on in the next one. Only a continued line is
+/// copied.
 pub(super) struct LogicalLines<'a> {
     rest: &'a [u8],
     number: u32,

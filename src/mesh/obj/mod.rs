@@ -1,10 +1,11 @@
 //! OBJ, read directly: a subdivision mesh needs the vertices exactly as the file indexes them.
 //!
 //! Readers made for drawing re-index vertices and split them between groups, which would cut seams into the surface.
-//! Here `v`, `f`, OpenSubdiv's `t` tags and Embree's `ec` lines count. Texture coordinates and normals (the limit surface has its
-//! own), groups, objects, materials and smoothing groups are passed over, for they change no surface. Everything else is passed over
-//! with a note that names it: points, lines, free-form geometry, other files, and what no version of the format knows.
-//! Text may be ASCII, UTF-8 or Latin-1, and packed by gzip; only numbers and tag names are interpreted.
+//! Here `v`, `f`, OpenSubdiv's `t` tags and Embree's `ec` lines count. Texture coordinates and normals (the limit
+//! surface has its own), groups, objects, materials and smoothing groups are passed over, for they change no surface.
+//! Everything else is passed over with a note that names it: points, lines, free-form geometry, other files, and what
+//! no version of the format knows. Text may be ASCII, UTF-8 or Latin-1, and packed by gzip; only numbers and tag names
+//! are interpreted.
 
 mod lines;
 mod number;
@@ -133,8 +134,8 @@ impl Reader<'_> {
         }
     }
 
-    /// Reads an edge crease as Embree's OBJ loader does: a weight, which is a sharpness, and the ends of the edge, as in faces. `None`
-    /// if it is something else.
+    /// Reads an edge crease as Embree's OBJ loader does: a weight, which is a sharpness, and the ends of the edge, as
+    /// in faces. `None` if it is something else.
     fn edge_crease<'t>(&mut self, number: u32, mut tokens: impl Iterator<Item = &'t [u8]>) -> Option<()> {
         let weight: f32 = std::str::from_utf8(tokens.next()?).ok()?.parse().ok()?;
         let mut end = || self.face_vertex(number, tokens.next()?).ok();

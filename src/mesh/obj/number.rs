@@ -2,8 +2,8 @@
 
 /// What a number is written as that is none: `None` for text that does not look like it.
 ///
-/// `nan` and `inf` are what C and most languages print, with or without a sign; `-nan(ind)` is Microsoft's since 2015, and
-/// `-1.#IND`, `1.#QNAN`, `1.#INF` before, with zeros behind for a precision, or rounded to `1.#J`.
+/// `nan` and `inf` are what C and most languages print, with or without a sign; `-nan(ind)` is Microsoft's since 2015,
+/// and `-1.#IND`, `1.#QNAN`, `1.#INF` before, with zeros behind for a precision, or rounded to `1.#J`.
 pub(super) fn not_finite(token: &[u8]) -> Option<NotFinite> {
     let text = std::str::from_utf8(token).ok()?.trim_start_matches(['+', '-']).to_ascii_lowercase();
     let after_hash = text.split_once(".#").filter(|(digits, _)| digits.bytes().all(|b| b.is_ascii_digit()));

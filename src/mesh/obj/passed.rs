@@ -36,8 +36,9 @@ impl Kind {
         Self::Unknown,
     ];
 
-    /// The kind of a keyword of the format's version 3.0, with those that it supersedes; `None` for what everybody writes and
-    /// what changes no surface: texture coordinates, normals, groups, objects, smoothing groups and materials.
+    /// The kind of a keyword of the format's version 3.0, with those that it supersedes; `None` for what everybody
+    /// writes and what changes no surface: texture coordinates, normals, groups, objects, smoothing groups and
+    /// materials.
     fn of(keyword: &[u8]) -> Option<Self> {
         Some(match keyword {
             b"vt" | b"vn" | b"g" | b"o" | b"s" | b"usemtl" | b"mtllib" => return None,

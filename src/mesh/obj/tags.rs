@@ -14,9 +14,10 @@
 //! | `smoothtriangles` | `catmark`; `smooth` would change the surface and is refused |
 //! | `facevaryinginterpolateboundary`, `facevaryingpropagatecorners` | ignored: there is no face-varying data here |
 //!
-//! OpenSubdiv's own shape reader takes the vertices of a `crease` in pairs (`assignComponentTags` in regression/common/far_utils.h),
-//! RenderMan (which defined the tag) as a chain. The two agree for one edge a tag, as in all of OpenSubdiv's shapes. Where they differ,
-//! a tag with one sharpness is pairs if all pairs are edges of the mesh and the chain has a link that is none ([`read_pairs`]).
+//! OpenSubdiv's own shape reader takes the vertices of a `crease` in pairs (`assignComponentTags` in
+//! regression/common/far_utils.h), RenderMan (which defined the tag) as a chain. The two agree for one edge a tag, as
+//! in all of OpenSubdiv's shapes. Where they differ, a tag with one sharpness is pairs if all pairs are edges of the
+//! mesh and the chain has a link that is none ([`read_pairs`]).
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -72,8 +73,8 @@ pub(super) fn read<F: Fn() -> Place>(
     }
 }
 
-/// Takes chains of creases as pairs where only that makes sense: all pairs are edges, and a link between two of them is none. Counts
-/// them with the other tags of pairs.
+/// Takes chains of creases as pairs where only that makes sense: all pairs are edges, and a link between two of them is
+/// none. Counts them with the other tags of pairs.
 pub(super) fn read_pairs(mesh: &mut SubdivMesh, lines: &mut Lines) {
     if lines.chains.is_empty() {
         return;
