@@ -64,8 +64,15 @@ impl<'a> LogicalLines<'a> {
 
 /// A line, and the comment behind it with its `#`.
 fn without_comment(line: &[u8]) -> (&[u8], &[u8]) {
-    let mut hashes = (0..line.len()).filter(|&i| line[i] == b'#');
-    line.split_at(hashes.find(|&hash| !number::has_hash(line, hash)).unwrap_or(line.len()))
+    let mut start = 0;
+    while let Some(found) = line[start..].iter().position(|&b| b == b'#') {
+        let hash = start + found;
+        if !number::has_hash(line, hash) {
+            return line.split_at(hash);
+        }
+        start = hash + 1;
+    }
+    line.split_at(line.len())
 }
 
 /// Whether a comment is the word crease and three numbers or more, as some programs write creases.

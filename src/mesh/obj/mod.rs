@@ -159,17 +159,26 @@ impl Reader<'_> {
         for axis in 0..3 {
             let token =
                 tokens.next().ok_or_else(|| MeshError::MissingCoordinates { at: self.place(number), found: axis })?;
-            if let Some(what) = number::not_finite(token) {
-                let (at, cause) = (self.place(number), what.cause());
-                return Err(MeshError::CoordinateNoNumber { at, found: quote(token), cause });
-            }
-            let value = std::str::from_utf8(token).ok().and_then(|text| text.parse().ok());
-            point[axis] = value.ok_or_else(|| self.not_a_number(number, token, "a coordinate"))?;
+            let value = std::str::from_utf8(token).ok().and_then(|text| text.parse::<f64>().ok());
+            point[axis] = match value {
+                Some(value) if value.is_finite() => value,
+                _ => self.odd_coordinate(number, token, value)?,
+            };
         }
         // What may follow is a weight or a colour.
         self.mesh.points.push(point);
         self.lines.vertices.push(number);
         Ok(())
+    }
+
+    /// A coordinate that is no finite number: refused, but for digits that overflow, which validation refuses.
+    fn odd_coordinate(&self, number: u32, token: &[u8], value: Option<f64>) -> Result<f64, MeshError> {
+        match number::not_finite(token) {
+            Some(what) => {
+                Err(MeshError::CoordinateNoNumber { at: self.place(number), found: quote(token), cause: what.cause() })
+            }
+            None => value.ok_or_else(|| self.not_a_number(number, token, "a coordinate")),
+        }
     }
 
     fn face<'t>(&mut self, number: u32, tokens: impl Iterator<Item = &'t [u8]>) -> Result<(), MeshError> {
