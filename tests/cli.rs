@@ -60,7 +60,6 @@ fn bad_meshes_are_refused_by_every_command_with_the_line() {
         ("index_zero", format!("{QUAD}f 0 1 2\n"), ":5: "),
         ("two_gon", format!("{QUAD}f 1 2\n"), ":5: "),
         ("repeated_vertex", format!("{QUAD}f 1 2 2 3\n"), ":5: "),
-        ("duplicate_face", format!("{QUAD}f 1 2 3 4\nf 2 3 4 1\n"), ":6: "),
         ("nan", format!("v nan 0 0\n{QUAD}f 2 3 4 5\n"), ":1: "),
         ("crease_out_of_range", format!("{QUAD}f 1 2 3 4\nt crease 2/1/0 0 99 3\n"), ":6: "),
         ("crease_no_edge", format!("{QUAD}f 1 2 3 4\nt crease 2/1/0 0 2 3\n"), ":6: "),

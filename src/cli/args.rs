@@ -56,7 +56,7 @@ pub(super) enum Backend {
 
 #[derive(Debug, Args)]
 pub(super) struct BenchArgs {
-    /// Control mesh (.obj, .usd, .usda, .usdc or .usdz)
+    /// Control mesh (.obj, .usd, .usda, .usdc or .usdz, also with .gz), or - for standard input
     pub mesh: Option<PathBuf>,
     #[command(flatten)]
     pub scene: SceneArgs,
@@ -76,7 +76,7 @@ pub(super) struct BenchArgs {
 
 #[derive(Debug, Args)]
 pub(super) struct EvalArgs {
-    /// Control mesh (.obj, .usd, .usda, .usdc or .usdz)
+    /// Control mesh (.obj, .usd, .usda, .usdc or .usdz, also with .gz), or - for standard input
     pub mesh: Option<PathBuf>,
     #[command(flatten)]
     pub scene: SceneArgs,
@@ -136,7 +136,7 @@ pub(super) struct VerifyArgs {
 
 #[derive(Debug, Args)]
 pub(super) struct GlintsArgs {
-    /// Control mesh (.obj, .usd, .usda, .usdc or .usdz)
+    /// Control mesh (.obj, .usd, .usda, .usdc or .usdz, also with .gz), or - for standard input
     pub mesh: Option<PathBuf>,
     #[command(flatten)]
     pub scene: SceneArgs,
@@ -159,7 +159,7 @@ pub(super) struct GlintsArgs {
 
 #[derive(Debug, Args)]
 pub(super) struct InfoArgs {
-    /// Control mesh (.obj, .usd, .usda, .usdc or .usdz)
+    /// Control mesh (.obj, .usd, .usda, .usdc or .usdz, also with .gz), or - for standard input
     pub mesh: Option<PathBuf>,
     #[command(flatten)]
     pub scene: SceneArgs,

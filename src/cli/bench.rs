@@ -4,6 +4,7 @@ use super::args::BenchArgs;
 use super::{Failure, write_out};
 use crate::bench::{self, Contender, Effort, Means, Row, Stages, Work};
 use crate::gpu::Gpu;
+use crate::line::count;
 use crate::output::check_writable;
 use crate::statistics::short;
 use serde::Serialize;
@@ -36,7 +37,7 @@ fn machine() -> String {
     let Ok(mut system) = sysinfo::System::new() else { return "unknown".to_owned() };
     system.refresh_cpu_list(sysinfo::CpuRefreshKind::nothing());
     let brand = system.cpus().first().map_or("unknown processor", |cpu| cpu.brand().trim());
-    format!("{brand}, {} cores", system.cpus().len())
+    format!("{brand}, {}", count(system.cpus().len(), "core"))
 }
 
 pub(super) fn run(args: &BenchArgs) -> Result<(), Failure> {
@@ -78,11 +79,11 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), Failure> {
 
 fn text(report: &Report<'_>) -> String {
     let mut out = format!(
-        "machine  {}\nadapter  {}\nmesh     {} ({} faces)\n\n",
+        "machine  {}\nadapter  {}\nmesh     {} ({})\n\n",
         report.machine,
         report.adapter.unwrap_or("none: rows that need one are left out"),
         report.mesh,
-        report.faces
+        count(report.faces, "face")
     );
     let _ = writeln!(
         out,

@@ -6,6 +6,7 @@ use super::render::RenderArgs;
 use crate::adaptive::AdaptivePatches;
 use crate::compare::{Comparison, Exact};
 use crate::gpu::{Gpu, Pipeline, Tables, View};
+use crate::line::count;
 use crate::mesh::SubdivMesh;
 use crate::osd::{EndCap, Isolation};
 use crate::output::{comparison_panels, sheet, write_png};
@@ -115,13 +116,15 @@ impl Compared {
     pub fn say(&self) {
         let Compared { level_smooth, level_sharp, end_caps, patches, patches_end_cap, normal_deg, lines_px, .. } = self;
         tell!(
-            "compare: OpenSubdiv level {level_smooth}/{level_sharp}, {patches} patches ({patches_end_cap} {end_caps} end caps): \
-             normals p99 {}, max {} degrees; reflection lines p99 {}, max {} pixels; seen in one picture only: {} pixels",
+            "compare: OpenSubdiv level {level_smooth}/{level_sharp}, {} ({}): \
+             normals p99 {}, max {} degrees; reflection lines p99 {}, max {} pixels; seen in one picture only: {}",
+            count(*patches, "patch"),
+            count(*patches_end_cap, &format!("{end_caps} end cap")),
             short(normal_deg.p99),
             short(normal_deg.max),
             short(lines_px.p99),
             short(lines_px.max),
-            self.only_exact_px + self.only_osd_px
+            count(self.only_exact_px + self.only_osd_px, "pixel")
         );
     }
 }

@@ -27,7 +27,7 @@ use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 pub(super) struct RenderArgs {
-    /// Control mesh (.obj, .usd, .usda, .usdc or .usdz)
+    /// Control mesh (.obj, .usd, .usda, .usdc or .usdz, also with .gz), or - for standard input
     pub(super) mesh: Option<PathBuf>,
     #[command(flatten)]
     pub(super) scene: AnimationArgs,

@@ -4,24 +4,41 @@ use super::Failure;
 use super::numbered::Numbered;
 use super::settings::CommandLine;
 use crate::field::Scout;
-use crate::mesh::{self, Choice, MeshFile, Scheme, SubdivMesh};
+use crate::line::printable;
+use crate::memory;
+use crate::mesh::{self, Choice, MeshFile, MeshFormat, Scheme, SubdivMesh};
 use clap::Args;
+use std::io::Read;
 use std::path::{Path, PathBuf};
+
+/// What the mesh is called that comes by standard input.
+const STANDARD_INPUT: &str = "-";
 
 /// Most times of an animation: more than an hour at 25 a second.
 const MOST_TIMES: f64 = 100_000.0;
 
 #[derive(Debug, Clone, Default, Args)]
-pub(super) struct PrimArgs {
+pub(super) struct ReadArgs {
     /// Of a USD stage, read the meshes of this prim and of those below it alone; give as many as there are to be
     #[arg(long = "prim", value_name = "PATH")]
     prims: Vec<String>,
+    /// Refuse a mesh with a face that names a vertex twice, has less than three or doubles another one, instead of leaving that
+    /// face out
+    #[arg(long)]
+    strict: bool,
+    /// Format of standard input, where MESH is - [default: what the first bytes look like]
+    #[arg(long, value_name = "FORMAT", value_parser = format)]
+    format: Option<MeshFormat>,
+}
+
+fn format(text: &str) -> Result<MeshFormat, String> {
+    MeshFormat::of_extension(text).ok_or_else(|| "give obj, usd, usda, usdc or usdz".to_owned())
 }
 
 #[derive(Debug, Clone, Default, Args)]
 pub(super) struct SceneArgs {
     #[command(flatten)]
-    prims: PrimArgs,
+    read: ReadArgs,
     /// Time code at which a USD stage is read, or number of the frame where MESH has #### or %04d [default: the stage's
     /// default time]
     #[arg(long, value_name = "T", value_parser = time, allow_negative_numbers = true)]
@@ -43,14 +60,14 @@ impl SceneArgs {
 
     /// As [`load`](Self::load); the error is one line.
     pub(super) fn read(&self, path: Option<&Path>) -> Result<SubdivMesh, String> {
-        let mesh = Source::open(path, &self.prims)?.at(self.time)?;
+        let mesh = Source::open(path, &self.read)?.at(self.time)?;
         say_notes(path, &mesh);
         Ok(mesh)
     }
 
     /// Adds these flags to a command that is recorded.
     pub(super) fn record(&self, line: &mut CommandLine) {
-        self.prims.record(self.time, line);
+        self.read.record(self.time, line);
     }
 
     /// These flags as a shell takes them, each after a space.
@@ -64,7 +81,7 @@ impl SceneArgs {
 #[derive(Debug, Clone, Default, Args)]
 pub(super) struct AnimationArgs {
     #[command(flatten)]
-    prims: PrimArgs,
+    read: ReadArgs,
     /// Time code at which a USD stage is read, or number of the frame where MESH has #### or %04d; with several, a series of
     /// pictures into numbered files, STEP (1) apart. Points move, the topology must stay [default: the stage's default time]
     #[arg(long, value_name = "T|FIRST:LAST[:STEP]", value_parser = times, allow_negative_numbers = true)]
@@ -88,16 +105,16 @@ impl AnimationArgs {
     }
 
     pub(super) fn source<'a>(&'a self, path: Option<&'a Path>) -> Result<Source<'a>, Failure> {
-        Source::open(path, &self.prims).map_err(Failure::Bad)
+        Source::open(path, &self.read).map_err(Failure::Bad)
     }
 
     /// Adds the flags of the picture at a time to a command that is recorded.
     pub(super) fn record(&self, time: Option<f64>, line: &mut CommandLine) {
-        self.prims.record(time, line);
+        self.read.record(time, line);
     }
 }
 
-impl PrimArgs {
+impl ReadArgs {
     fn record(&self, time: Option<f64>, line: &mut CommandLine) {
         self.prims.iter().for_each(|prim| line.flag("prim", prim));
         time.iter().for_each(|time| line.flag("time", time));
@@ -156,8 +173,10 @@ pub(super) fn check_quads(mesh: &SubdivMesh, command: &str) -> Result<(), String
 
 /// What the reader passed over, on standard error.
 pub(super) fn say_notes(path: Option<&Path>, mesh: &SubdivMesh) {
+    let name = path.map_or_else(|| "sample".to_owned(), |path| path.display().to_string());
+    let name = if name == STANDARD_INPUT { "standard input" } else { &name };
     for note in &mesh.notes {
-        tell!("catoptric: {}: {note}", path.unwrap_or(Path::new("sample")).display());
+        tell!("catoptric: {}", printable(&format!("{name}: {note}")));
     }
 }
 
@@ -180,7 +199,7 @@ pub(super) fn say_without_area(mesh: &SubdivMesh, scout: &Scout, so: &str) -> bo
 /// Where the mesh of each time comes from.
 pub(super) struct Source<'a> {
     place: Place<'a>,
-    prims: &'a [String],
+    read: &'a ReadArgs,
 }
 
 enum Place<'a> {
@@ -192,23 +211,29 @@ enum Place<'a> {
 }
 
 impl<'a> Source<'a> {
-    fn open(path: Option<&'a Path>, prims: &'a PrimArgs) -> Result<Self, String> {
+    fn open(path: Option<&'a Path>, read: &'a ReadArgs) -> Result<Self, String> {
         let numbered = |path: &Path| Numbered::placed(path.file_name()?.to_str()?);
+        let is_standard_input = path.is_some_and(|path| path == STANDARD_INPUT);
+        if read.format.is_some() && !is_standard_input {
+            return Err("--format is for standard input; leave it out, or give - for the mesh".to_owned());
+        }
         let place = match path {
             None => Place::Sample,
+            Some(_) if is_standard_input => Place::File(standard_input(read.format)?),
             Some(path) => match numbered(path).filter(|_| !path.exists()) {
                 Some(name) => Place::Sequence(path, name),
                 None => Place::File(MeshFile::open(path).map_err(|error| error.to_string())?),
             },
         };
-        Ok(Self { place, prims: &prims.prims })
+        Ok(Self { place, read })
     }
 
     /// The mesh at a time; the error is one line.
     pub(super) fn at(&self, time: Option<f64>) -> Result<SubdivMesh, String> {
-        let choice = Choice { prims: self.prims.to_vec(), time };
+        let ReadArgs { prims, strict, .. } = self.read;
+        let choice = Choice { prims: prims.clone(), time, strict: *strict };
         match &self.place {
-            Place::Sample if !self.prims.is_empty() => Err("--prim is for USD files; give one before it".to_owned()),
+            Place::Sample if !prims.is_empty() => Err("--prim is for USD files; give one before it".to_owned()),
             Place::Sample if time.is_some() => {
                 Err("--time is for USD files and sequences; give one before it".to_owned())
             }
@@ -216,12 +241,28 @@ impl<'a> Source<'a> {
             Place::File(file) => file.read(&choice).map_err(|error| error.to_string()),
             Place::Sequence(path, name) => {
                 let path = frame(path, name, time)?;
-                let is_obj = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("obj"));
+                let is_obj = MeshFormat::of_path(&path) == Some(MeshFormat::Obj);
                 let choice = Choice { time: choice.time.filter(|_| !is_obj), ..choice };
                 mesh::read_choice(&path, &choice).map_err(|error| error.to_string())
             }
         }
     }
+}
+
+/// Reads all of standard input as a mesh file.
+fn standard_input(format: Option<MeshFormat>) -> Result<MeshFile, String> {
+    const NAME: &str = "standard input";
+    // The text and what it says take about as much.
+    let most = memory::limit() / 2;
+    let mut content = Vec::new();
+    let read = std::io::stdin().lock().take(most.saturating_add(1)).read_to_end(&mut content);
+    read.map_err(|error| format!("{NAME}: cannot be read ({error}); give a file"))?;
+    if content.len() as u64 > most {
+        let needs = memory::TooMuch { needs: 2 * content.len() as u64, limit: memory::limit() };
+        return Err(format!("{NAME}: to be read {needs}"));
+    }
+    let format = format.unwrap_or_else(|| MeshFormat::of_content(&content));
+    MeshFile::of_bytes(content, format, NAME, "stdin").map_err(|error| error.to_string())
 }
 
 /// The file of a frame.

@@ -35,7 +35,7 @@ enum Cover {
 
 impl SubdivMesh {
     /// Cuts the concave faces of a mesh of the scheme [`None`](Scheme::None) into convex pieces, in the place of the face; indices of holes
-    /// follow. A mesh of another scheme stays as it is.
+    /// and bad faces follow. A mesh of another scheme stays as it is.
     pub fn cut_concave_faces(&mut self) -> CutFaces {
         self.cut_concave_faces_with(|_, _| {})
     }
@@ -48,7 +48,7 @@ impl SubdivMesh {
             return told;
         }
         let covers: Vec<(usize, Vec<Vec<u32>>)> = self
-            .faces()
+            .good_faces()
             .filter_map(|(index, face)| match cover(face, &self.points) {
                 Cover::Convex => None,
                 Cover::Pieces(pieces) => {
@@ -95,12 +95,13 @@ impl SubdivMesh {
                 _ => self.holes.push(u32::MAX),
             }
         }
+        self.bad_faces.iter_mut().for_each(|bad| bad.face = first_of[bad.face as usize]);
         told
     }
 
     /// The first face that has to be cut under the scheme [`None`](Scheme::None).
     pub(super) fn first_concave_face(&self) -> Option<usize> {
-        self.faces().find(|(_, face)| matches!(cover(face, &self.points), Cover::Pieces(_))).map(|(index, _)| index)
+        self.good_faces().find(|(_, face)| matches!(cover(face, &self.points), Cover::Pieces(_))).map(|(index, _)| index)
     }
 }
 

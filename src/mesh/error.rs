@@ -6,6 +6,7 @@ use std::path::Path;
 
 use thiserror::Error;
 
+use crate::line::count;
 use crate::memory::TooMuch;
 
 use super::validate::{MAX_COORDINATE, MAX_VALENCE};
@@ -108,7 +109,11 @@ pub enum MeshError {
     Unreadable { at: Place, error: io::Error },
     #[error("{at}: to be read {needs}")]
     Memory { at: Place, needs: TooMuch },
-    #[error("{at}: only .obj, .usd, .usda, .usdc and .usdz are read; export the mesh as one of these")]
+    #[error("{at}: not a file that gzip wrote ({error}); pack it again, or give it unpacked")]
+    NotPacked { at: Place, error: io::Error },
+    #[error(
+        "{at}: only .obj, .usd, .usda, .usdc and .usdz are read, also with .gz behind; export the mesh as one of these"
+    )]
     UnsupportedFormat { at: Place },
     #[error("{at}: the file is empty; export the mesh again")]
     EmptyFile { at: Place },
@@ -136,6 +141,8 @@ pub enum MeshError {
     NoVertices { at: Place },
     #[error("{at}: the mesh has no faces; give a mesh with polygons, not points or curves alone")]
     NoFaces { at: Place },
+    #[error("{at}: the mesh has no {missing}, but {found}, which is not read; give a mesh with polygons")]
+    NothingRead { at: Place, missing: &'static str, found: String },
     #[error(
         "{at}: {count} {what}, but OpenSubdiv's indices end at {limit}; split the mesh",
         limit = i32::MAX
@@ -147,6 +154,10 @@ pub enum MeshError {
     )]
     FaceSizesDisagree { at: Place, expected: u64, found: usize },
 
+    #[error(
+        "{at}: coordinate '{found}' is not a number, the program that wrote it {cause}; correct the vertex, or export the mesh again"
+    )]
+    CoordinateNoNumber { at: Place, found: String, cause: &'static str },
     #[error("{at}: coordinate {value} is not finite; correct the vertex")]
     CoordinateNotFinite { at: Place, value: f64 },
     #[error(
@@ -205,7 +216,7 @@ pub enum MeshError {
     TagWithoutHeader { at: Place },
     #[error("{at}: tag '{name}' is unknown; use crease, corner, hole, interpolateboundary, creasemethod or scheme")]
     UnknownTag { at: Place, name: String },
-    #[error("{at}: the {name} tag announces {announced} values and has {found}; correct its counts")]
+    #[error("{at}: the {name} tag announces {} and has {found}; correct its counts", count(*.announced, "value"))]
     TagCountMismatch { at: Place, name: String, announced: usize, found: usize },
     #[error("{at}: the {name} tag has {ints}/{floats}/{strings} ints/floats/strings; it takes {expected}")]
     TagShape { at: Place, name: &'static str, ints: usize, floats: usize, strings: usize, expected: &'static str },
@@ -245,7 +256,7 @@ pub enum MeshError {
     AttributeSpline { at: Place, name: String },
     #[error("{at}: {name} has {value}; use 0 and above")]
     AttributeNegative { at: Place, name: &'static str, value: i32 },
-    #[error("{at}: {name} has {found} values; write {expected}")]
+    #[error("{at}: {name} has {}; write {expected}", count(*.found, "value"))]
     AttributeLength { at: Place, name: &'static str, found: usize, expected: String },
     #[error("{at}: creaseLengths has {length}; a crease has at least 2 vertices")]
     CreaseTooShort { at: Place, length: u32 },

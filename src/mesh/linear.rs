@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
-use super::{Boundary, Corner, Crease, Scheme, SubdivMesh};
+use super::{BadFace, Boundary, Corner, Crease, Scheme, SubdivMesh};
 
 /// Sharpness from which an edge or vertex never decays.
 const INFINITE: f32 = 10.0;
@@ -20,9 +20,10 @@ impl SubdivMesh {
         let vertices = std::mem::take(&mut self.face_vertices);
         let mut is_hole = vec![false; sizes.len()];
         std::mem::take(&mut self.holes).into_iter().for_each(|face| is_hole[face as usize] = true);
+        let mut bad_faces = std::mem::take(&mut self.bad_faces).into_iter().peekable();
         let mut middles = HashMap::new();
         let mut rest = vertices.as_slice();
-        for (&size, is_hole) in sizes.iter().zip(is_hole) {
+        for ((&size, is_hole), index) in sizes.iter().zip(is_hole).zip(0..) {
             let (face, more) = rest.split_at(size as usize);
             rest = more;
             let first = self.face_sizes.len() as u32;
@@ -33,6 +34,10 @@ impl SubdivMesh {
             self.face_sizes.resize(self.face_vertices.len() / 4, 4);
             if is_hole {
                 self.holes.extend(first..self.face_sizes.len() as u32);
+            }
+            if let Some(bad) = bad_faces.next_if(|bad| bad.face == index) {
+                let quads = first..self.face_sizes.len() as u32;
+                self.bad_faces.extend(quads.map(|face| BadFace { face, ..bad }));
             }
         }
         let edge = |a: u32, b: u32| Crease { vertices: [a.min(b), a.max(b)], sharpness: INFINITE };

@@ -45,12 +45,20 @@ impl SubdivMesh {
         lists.iter().sum::<usize>() as u64
     }
 
-    /// Smallest and largest coordinates of the control points that faces use; `None` if there are no faces.
+    /// Smallest and largest coordinates of the control points that faces use; `None` if there are no faces. Those of
+    /// [`bad_faces`](Self::bad_faces) do not count.
     ///
     /// # Panics
     /// If a face names a vertex that is not there, which [`validate`](Self::validate) refuses.
     pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
-        let mut used = self.face_vertices.iter().map(|&v| self.points[v as usize]);
+        match self.bad_faces[..] {
+            [] => self.bounds_of(self.face_vertices.iter()),
+            _ => self.bounds_of(self.good_faces().flat_map(|(_, face)| face)),
+        }
+    }
+
+    fn bounds_of<'a>(&self, used: impl Iterator<Item = &'a u32>) -> Option<(DVec3, DVec3)> {
+        let mut used = used.map(|&v| self.points[v as usize]);
         let first = used.next()?;
         Some(used.fold((first, first), |(low, high), p| (low.min(p), high.max(p))))
     }

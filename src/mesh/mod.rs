@@ -7,31 +7,38 @@
 //! [`Boundary::default`] is `EdgeAndCorner`, as in USD. An **OBJ file** without an `interpolateboundary` tag gets `EdgeOnly`
 //! instead, because that is what OpenSubdiv's own regression suite does with such a shape.
 
+mod bad_faces;
 mod concave;
 mod error;
+mod format;
 mod linear;
-mod lines;
 mod measure;
 mod obj;
 mod orientation;
 mod originals;
+mod packed;
 mod parts;
 mod polygon;
 mod sample;
 mod scheme;
-mod tags;
 mod usd;
 mod validate;
 
+use std::borrow::Cow;
+use std::fs;
+use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
+use tempfile::TempPath;
 
 use crate::memory;
 
+pub use bad_faces::{BadFace, Fault};
 pub use concave::CutFaces;
 pub use error::{MeshError, Place, Spot};
+pub use format::MeshFormat;
 pub use orientation::{FacePlace, Orientation};
 pub use originals::Originals;
 pub use parts::{Part, PtexParts, Repeat};
@@ -39,10 +46,11 @@ pub use sample::sample;
 pub use scheme::Scheme;
 pub use validate::{MAX_COORDINATE, MAX_VALENCE};
 
-/// Extensions of the files that [`read`] reads, in lower case.
+/// Extensions of the files that [`read`] reads, in lower case. `.gz` may stand behind each ([`MeshFormat::of_path`]).
 pub const EXTENSIONS: [&str; 5] = ["obj", "usd", "usda", "usdc", "usdz"];
 
-/// Reads and validates a mesh file. The extension says the format: OBJ (`.obj`) or USD (`.usd`, `.usda`, `.usdc`, `.usdz`).
+/// Reads and validates a mesh file. The extension says the format: OBJ (`.obj`) or USD (`.usd`, `.usda`, `.usdc`, `.usdz`). With
+/// `.gz` behind it the file is unpacked; a USD file is then read by itself, without others that it refers to.
 ///
 /// The mesh is named after the file's stem. Vertices and faces keep the order of the file, whatever groups or objects
 /// they are in, so a vertex that two groups share stays one vertex.
@@ -51,8 +59,12 @@ pub const EXTENSIONS: [&str; 5] = ["obj", "usd", "usda", "usdc", "usdz"];
 /// the stage, with their points in world space and the stage's units; [`SubdivMesh::parts`] tells them apart. Values are those of
 /// the default time, or the first sample where there is no default; an attribute that is not there has its schema's fallback.
 ///
+/// A face that names a vertex twice, has less than three or doubles another one is left out as a hole, with a note
+/// ([`SubdivMesh::bad_faces`]).
+///
 /// # Errors
-/// A file that cannot be read, that is not of its format, or whose mesh does not pass [`SubdivMesh::validate`].
+/// A file that cannot be read, that is not of its format, or whose mesh does not pass [`SubdivMesh::validate`] without its bad
+/// faces, or has no others.
 /// The message is one line: `file:line: what; what to do`, or `file: /Prim/Path: what; what to do`.
 pub fn read(path: &Path) -> Result<SubdivMesh, MeshError> {
     read_choice(path, &Choice::default())
@@ -66,6 +78,9 @@ pub struct Choice {
     /// Time code at which attributes are read: between two samples numbers are interpolated, all else is that of the sample
     /// before. `None`: the default time, and the first sample of what has samples alone.
     pub time: Option<f64>,
+    /// Refuse a mesh with a face that cannot be part of a surface, instead of leaving that face out
+    /// ([`SubdivMesh::bad_faces`]).
+    pub strict: bool,
 }
 
 /// As [`read`], a part of the file, at a time.
@@ -83,7 +98,14 @@ pub struct MeshFile(Format);
 #[derive(Debug)]
 enum Format {
     Obj(PathBuf),
+    /// The text of an OBJ, what messages call it, and the name of the mesh.
+    Text(Vec<u8>, String, String),
     Usd(Box<usd::File>),
+    /// A stage whose file is ours, and is removed after it.
+    Unpacked {
+        file: Box<usd::File>,
+        _path: TempPath,
+    },
 }
 
 impl MeshFile {
@@ -93,29 +115,88 @@ impl MeshFile {
     /// A stage that cannot be read, or is not of its format, or a file too large for [`memory::limit`]. An OBJ is not looked
     /// at.
     pub fn open(path: &Path) -> Result<Self, MeshError> {
+        let at = || Place::file(path);
         // The text and what it says take about as much; a stage is read into values first.
         let size = path.metadata().map_or(0, |file| file.len());
-        memory::check(size.saturating_mul(2)).map_err(|needs| MeshError::Memory { at: Place::file(path), needs })?;
-        let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
-        match extension.as_deref() {
-            Some("obj") => Ok(Self(Format::Obj(path.to_owned()))),
-            Some("usd" | "usda" | "usdc" | "usdz") => Ok(Self(Format::Usd(Box::new(usd::File::open(path)?)))),
-            _ => Err(MeshError::UnsupportedFormat { at: Place::file(path) }),
+        memory::check(size.saturating_mul(2)).map_err(|needs| MeshError::Memory { at: at(), needs })?;
+        let is_packed = matches!(packed::unpacked_path(path), Cow::Owned(_));
+        match MeshFormat::of_path(path).ok_or_else(|| MeshError::UnsupportedFormat { at: at() })? {
+            MeshFormat::Obj => Ok(Self(Format::Obj(path.to_owned()))),
+            format if is_packed => {
+                let bytes = fs::read(path).map_err(|error| match error.kind() {
+                    ErrorKind::NotFound => MeshError::NotFound { at: at() },
+                    _ => MeshError::Unreadable { at: at(), error },
+                })?;
+                Self::of_bytes(bytes, format, &path.display().to_string(), &stem(path))
+            }
+            _ => {
+                let file = usd::File::open(path, &path.display().to_string(), &stem(path))?;
+                Ok(Self(Format::Usd(Box::new(file))))
+            }
         }
+    }
+
+    /// Takes the content of a file, which gzip may have packed. `source` is what messages call it, `name` the name of the mesh. A stage is
+    /// read without other files that it refers to by paths.
+    ///
+    /// # Errors
+    /// As [`open`](Self::open); content that cannot be unpacked; a stage that cannot be put into a temporary file.
+    pub fn of_bytes(content: Vec<u8>, format: MeshFormat, source: &str, name: &str) -> Result<Self, MeshError> {
+        let at = || Place::with(source, Spot::Whole);
+        let content = packed::unpacked(content, at)?;
+        if format == MeshFormat::Obj {
+            return Ok(Self(Format::Text(content, source.to_owned(), name.to_owned())));
+        }
+        if content.is_empty() {
+            return Err(MeshError::EmptyFile { at: at() });
+        }
+        let extension = format!(".{}", format.extension());
+        let write = || -> io::Result<TempPath> {
+            let mut file = tempfile::Builder::new().suffix(&extension).tempfile()?;
+            file.write_all(&content)?;
+            Ok(file.into_temp_path())
+        };
+        let path = write().map_err(|error| MeshError::Unreadable { at: at(), error })?;
+        let file = usd::File::open(&path, source, name)?;
+        Ok(Self(Format::Unpacked { file: Box::new(file), _path: path }))
     }
 
     /// Reads and validates what is chosen.
     ///
     /// # Errors
-    /// As [`read`]; a prim that is not there, or has no mesh that is shown; prims or a time of an OBJ.
+    /// As [`read`]; a prim that is not there, or has no mesh that is shown; prims or a time of an OBJ; with
+    /// [`Choice::strict`] a face that cannot be part of a surface.
     pub fn read(&self, choice: &Choice) -> Result<SubdivMesh, MeshError> {
         match &self.0 {
-            Format::Obj(path) if !choice.prims.is_empty() => Err(MeshError::NoPrims { at: Place::file(path) }),
-            Format::Obj(path) if choice.time.is_some() => Err(MeshError::NoTime { at: Place::file(path) }),
-            Format::Obj(path) => obj::read(path),
-            Format::Usd(file) => file.read(choice),
+            Format::Obj(path) => {
+                check_obj_choice(choice, || Place::file(path))?;
+                obj::read(path, &stem(path), choice.strict)
+            }
+            Format::Text(text, source, name) => {
+                check_obj_choice(choice, || Place::with(source, Spot::Whole))?;
+                obj::parse(text, source, name, choice.strict)
+            }
+            Format::Usd(file) | Format::Unpacked { file, .. } => {
+                let mut mesh = file.read(choice)?;
+                bad_faces::note(&mut mesh, choice.strict, |mesh, bad| file.fault(mesh, bad))?;
+                Ok(mesh)
+            }
         }
     }
+}
+
+/// Refuses what an OBJ cannot have.
+fn check_obj_choice(choice: &Choice, at: impl Fn() -> Place) -> Result<(), MeshError> {
+    match choice {
+        Choice { prims, .. } if !prims.is_empty() => Err(MeshError::NoPrims { at: at() }),
+        Choice { time: Some(_), .. } => Err(MeshError::NoTime { at: at() }),
+        _ => Ok(()),
+    }
+}
+
+/// What a mesh is called that is read from a file.
+pub(crate) fn stem(path: &Path) -> String {
+    packed::unpacked_path(path).file_stem().unwrap_or_default().to_string_lossy().into_owned()
 }
 
 /// Reads and validates the text of an OBJ that is in memory; `name` is the mesh's, and the file's in messages.
@@ -123,7 +204,7 @@ impl MeshFile {
 /// # Errors
 /// As [`read`].
 pub fn parse_obj(text: &[u8], name: &str) -> Result<SubdivMesh, MeshError> {
-    obj::parse(text, name, name)
+    obj::parse(text, name, name, false)
 }
 
 /// What the subdivision rules do at the boundary of the mesh (OpenSubdiv's `VtxBoundaryInterpolation`).
@@ -197,6 +278,9 @@ pub struct SubdivMesh {
     pub corners: Vec<Corner>,
     /// Faces that take part in subdivision but have no surface.
     pub holes: Vec<u32>,
+    /// Faces of the file that are left out of the surface, in ascending order: holes ([`holes`](Self::holes) names them too)
+    /// whose vertices no other face has, and which are none of the file's.
+    pub bad_faces: Vec<BadFace>,
     /// Rules of subdivision.
     pub scheme: Scheme,
     /// Boundary rule.
@@ -213,6 +297,6 @@ pub struct SubdivMesh {
     pub parts: Vec<Part>,
     /// Line of the file that each face stands on, counted from 1; empty for a mesh that comes from no text of faces.
     pub face_lines: Vec<u32>,
-    /// What the reader passed over that shapes would show, in sentences.
+    /// What the reader passed over or left out, in sentences.
     pub notes: Vec<String>,
 }

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::{Corner, Crease, Part, Repeat, SubdivMesh};
+use super::{BadFace, Corner, Crease, Part, Repeat, SubdivMesh};
 
 /// The parts of a scene that repeat none, as a mesh of their own.
 #[derive(Debug)]
@@ -79,6 +79,9 @@ impl SubdivMesh {
         let corner = |(vertex, bits): (u32, u32)| Corner { vertex: vertex + point, sharpness: f32::from_bits(bits) };
         to.corners.extend(features.corners.into_iter().map(corner));
         to.holes.extend(features.holes.into_iter().map(|hole| hole + face));
+        let bad = |end: u32| self.bad_faces.partition_point(|bad| bad.face < end);
+        let bad = &self.bad_faces[bad(part.faces.start)..bad(part.faces.end)];
+        to.bad_faces.extend(bad.iter().map(|bad| BadFace { face: bad.face - part.faces.start + face, ..*bad }));
         to.parts.push(Part {
             name: part.name.clone(),
             faces: face..to.face_sizes.len() as u32,

@@ -10,8 +10,11 @@
 //!   the first and turn its edges non-manifold.
 //! * The same edge or vertex sharpened more than once: the last one counts.
 
+use std::ops::Range;
+
 use super::error::{MeshError, Place, Spot};
-use super::{Scheme, SubdivMesh};
+use super::bad_faces;
+use super::{BadFace, Scheme, SubdivMesh};
 
 /// Largest number of edges at a vertex, and of vertices in a face: OpenSubdiv's `Vtr::VALENCE_LIMIT` (16-bit local
 /// indices).
@@ -28,6 +31,10 @@ pub(super) struct Lines {
     pub(super) creases: Vec<u32>,
     pub(super) corners: Vec<u32>,
     pub(super) holes: Vec<u32>,
+    /// Creases of each tag that may be a chain of vertices or pairs of them.
+    pub(super) chains: Vec<Range<usize>>,
+    /// Number of tags that were read as pairs.
+    pub(super) pairs: usize,
 }
 
 /// How the messages about a mesh name its parts.
@@ -53,6 +60,12 @@ enum Part {
 impl Source<'_> {
     fn whole(&self) -> Place {
         Place::with(self.name, Spot::Whole)
+    }
+
+    /// What is wrong with a face, as an error.
+    pub(super) fn fault(&self, bad: &BadFace) -> MeshError {
+        let spot = |face: usize| self.spot(Part::Face(face));
+        bad.fault.error(self.place(Part::Face(bad.face as usize)), self.first_vertex, spot)
     }
 
     fn spot(&self, part: Part) -> Spot {
@@ -94,14 +107,53 @@ impl SubdivMesh {
 
 /// As [`SubdivMesh::validate`], with places as the source names them.
 pub(super) fn check(mesh: &SubdivMesh, source: &Source<'_>) -> Result<(), MeshError> {
-    check_counts(mesh, &source.whole())?;
+    check_indices(mesh, source)?;
     check_points(mesh, source)?;
     check_faces(mesh, source)?;
     check_scheme(mesh, source)?;
     check_duplicates(mesh, source)?;
+    check_features(mesh, source)
+}
+
+/// As [`check`], of a mesh that passed [`check_indices`] and whose bad faces are left out then: no face of it is there twice.
+pub(super) fn check_left_out(mesh: &SubdivMesh, source: &Source<'_>) -> Result<(), MeshError> {
+    check_counts(mesh, &source.whole())?;
+    check_points(mesh, source)?;
+    check_faces(mesh, source)?;
+    check_scheme(mesh, source)?;
+    check_features(mesh, source)
+}
+
+fn check_features(mesh: &SubdivMesh, source: &Source<'_>) -> Result<(), MeshError> {
     check_sharpness(mesh, source)?;
     check_creased_edges(mesh, source)?;
     check_holes(mesh, source)
+}
+
+/// Whether faces, creases and corners name vertices that are there: what [`bad_faces::leave_out`] asks for.
+pub(super) fn check_indices(mesh: &SubdivMesh, source: &Source<'_>) -> Result<(), MeshError> {
+    check_counts(mesh, &source.whole())?;
+    let count = mesh.points.len();
+    let first = source.first_vertex;
+    for (i, face) in mesh.faces() {
+        if let Some(&vertex) = face.iter().find(|&&vertex| vertex as usize >= count) {
+            let (vertex, last) = (u64::from(vertex) + first, count as u64 - 1 + first);
+            return Err(MeshError::VertexOutOfRange { at: source.place(Part::Face(i)), vertex, first, last });
+        }
+    }
+    let last = count as u64 - 1;
+    for (i, crease) in mesh.creases.iter().enumerate() {
+        if let Some(&vertex) = crease.vertices.iter().find(|&&v| v as usize >= count) {
+            return Err(MeshError::CreaseOutOfRange { at: source.place(Part::Crease(i)), vertex, last });
+        }
+    }
+    match mesh.corners.iter().position(|corner| corner.vertex as usize >= count) {
+        Some(i) => {
+            let at = source.place(Part::Corner(i));
+            Err(MeshError::CornerOutOfRange { at, vertex: mesh.corners[i].vertex, last })
+        }
+        None => Ok(()),
+    }
 }
 
 /// Whether the numbers of vertices and faces agree, and OpenSubdiv can count them.
@@ -148,7 +200,6 @@ fn check_points(mesh: &SubdivMesh, source: &Source<'_>) -> Result<(), MeshError>
 
 fn check_faces(mesh: &SubdivMesh, source: &Source<'_>) -> Result<(), MeshError> {
     let count = mesh.points.len();
-    let first = source.first_vertex;
     // The face that used a vertex last, plus one: finds a repetition without comparing all pairs.
     let mut last_face = vec![0_u32; count];
     let mut faces_at = vec![0_u32; count];
@@ -164,13 +215,10 @@ fn check_faces(mesh: &SubdivMesh, source: &Source<'_>) -> Result<(), MeshError> 
         }
         stamp += 1;
         for &vertex in face {
-            let shown = u64::from(vertex) + first;
-            let Some(last) = last_face.get_mut(vertex as usize) else {
-                let last = count as u64 - 1 + first;
-                return Err(MeshError::VertexOutOfRange { at: at(), vertex: shown, first, last });
-            };
+            let last = &mut last_face[vertex as usize];
             if *last == stamp {
-                return Err(MeshError::RepeatedVertex { at: at(), vertex: shown });
+                let vertex = u64::from(vertex) + source.first_vertex;
+                return Err(MeshError::RepeatedVertex { at: at(), vertex });
             }
             *last = stamp;
             faces_at[vertex as usize] += 1;
@@ -210,38 +258,11 @@ fn check_valence(mesh: &SubdivMesh, vertex: u32, source: &Source<'_>) -> Result<
     Ok(())
 }
 
-/// A face as its smallest vertex and the one after it, where to find the rest, and its index.
-struct Turned<'a> {
-    key: [u32; 2],
-    face: &'a [u32],
-    start: usize,
-    index: usize,
-}
-
-impl<'a> Turned<'a> {
-    fn new((index, face): (usize, &'a [u32])) -> Self {
-        let start = (0..face.len()).min_by_key(|&k| face[k]).unwrap_or(0);
-        let key = [face[start], face[(start + 1) % face.len()]];
-        Self { key, face, start, index }
-    }
-
-    /// All vertices from the smallest one on, in the face's own direction.
-    fn vertices(&self) -> impl Iterator<Item = &u32> {
-        self.face[self.start..].iter().chain(&self.face[..self.start])
-    }
-}
-
 fn check_duplicates(mesh: &SubdivMesh, source: &Source<'_>) -> Result<(), MeshError> {
-    let mut turned: Vec<_> = mesh.faces().map(Turned::new).collect();
-    turned.sort_unstable_by(|a, b| {
-        a.key.cmp(&b.key).then_with(|| a.vertices().cmp(b.vertices())).then(a.index.cmp(&b.index))
-    });
-    let same = |a: &Turned<'_>, b: &Turned<'_>| a.key == b.key && a.vertices().eq(b.vertices());
-    let first = turned.windows(2).filter(|pair| same(&pair[0], &pair[1])).min_by_key(|pair| pair[1].index);
-    match first {
-        Some(pair) => Err(MeshError::DuplicateFace {
-            at: source.place(Part::Face(pair[1].index)),
-            original: source.spot(Part::Face(pair[0].index)),
+    match bad_faces::duplicates(mesh.faces()).first() {
+        Some(&[copy, original]) => Err(MeshError::DuplicateFace {
+            at: source.place(Part::Face(copy)),
+            original: source.spot(Part::Face(original)),
         }),
         None => Ok(()),
     }
@@ -264,26 +285,16 @@ fn check_scheme(mesh: &SubdivMesh, source: &Source<'_>) -> Result<(), MeshError>
 }
 
 fn check_sharpness(mesh: &SubdivMesh, source: &Source<'_>) -> Result<(), MeshError> {
-    let count = mesh.points.len();
-    let last = count as u64 - 1;
     for (i, crease) in mesh.creases.iter().enumerate() {
         let at = || source.place(Part::Crease(i));
         let [a, b] = crease.vertices;
-        if let Some(&vertex) = crease.vertices.iter().find(|&&v| v as usize >= count) {
-            return Err(MeshError::CreaseOutOfRange { at: at(), vertex, last });
-        }
         if a == b {
             return Err(MeshError::CreaseOnOneVertex { at: at(), vertex: a });
         }
         check_sharpness_value(crease.sharpness, at)?;
     }
     for (i, corner) in mesh.corners.iter().enumerate() {
-        let at = || source.place(Part::Corner(i));
-        let vertex = corner.vertex;
-        if vertex as usize >= count {
-            return Err(MeshError::CornerOutOfRange { at: at(), vertex, last });
-        }
-        check_sharpness_value(corner.sharpness, at)?;
+        check_sharpness_value(corner.sharpness, || source.place(Part::Corner(i)))?;
     }
     Ok(())
 }

@@ -8,6 +8,7 @@ mod pictures;
 
 pub use pictures::Pictures;
 
+use crate::line::counted;
 use crate::statistics::short;
 use crate::verify::{MeshReport, Report, Sample, Tier};
 use askama::Template;
@@ -201,6 +202,12 @@ fn grouped(n: impl Borrow<usize>) -> String {
         out.push_str(&digits[at..at + 3]);
     }
     out
+}
+
+/// As [`grouped`], with the noun behind it.
+fn grouped_count(n: impl Borrow<usize>, noun: impl AsRef<str>) -> String {
+    let n = *n.borrow();
+    format!("{} {}", grouped(n), counted(n, noun.as_ref()))
 }
 
 /// A sample in digits that a table has room for.

@@ -2,6 +2,7 @@
 
 use super::report::{MeshReport, Report, Tier};
 use super::{dyadic, regular, vertex};
+use crate::line::count;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -158,7 +159,7 @@ impl OldMesh {
     fn compare(&self, name: &str, new: &MeshReport, comparison: &mut Comparison) {
         if new.patches_unjudged > self.patches_unjudged {
             let [old, new] = [self.patches_unjudged, new.patches_unjudged];
-            comparison.note(name, None, format!("{new} patches have no judged sample inside, {old} had none then"));
+            comparison.note(name, None, format!("{} without a judged sample inside, {old} then", count(new, "patch")));
         }
         let plain = new.tiers.iter().map(|row| (None, row));
         let known = new.reference_known_wrong.iter().map(|known| (Some(known.reason), &known.row));

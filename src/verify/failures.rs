@@ -2,6 +2,7 @@
 
 use super::bin::{Failed, FailedPatches};
 use super::difference::Sample;
+use crate::line::count;
 use crate::mesh::{PtexParts, SubdivMesh};
 use crate::patch::PatchKind;
 use crate::stam::LimitSurface;
@@ -105,21 +106,16 @@ impl Failures {
     }
 }
 
-/// A count and its noun.
-pub(super) fn counted(count: usize, one: &str, many: &str) -> String {
-    format!("{count} {}", if count == 1 { one } else { many })
-}
-
 impl fmt::Display for Failures {
     /// One line: how many samples in how many patches and faces.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
             "{} in {} of {} ({})",
-            counted(self.samples, "sample", "samples"),
-            counted(self.patches, "patch", "patches"),
-            counted(self.ptex_faces, "ptex face", "ptex faces"),
-            counted(self.control_faces, "control face", "control faces"),
+            count(self.samples, "sample"),
+            count(self.patches, "patch"),
+            count(self.ptex_faces, "ptex face"),
+            count(self.control_faces, "control face"),
         )
     }
 }
@@ -135,7 +131,7 @@ impl fmt::Display for FailedPatch {
         write!(f, " (u {}..{}, v {}..{}), control face {control_face}", u[0], u[1], v[0], v[1])?;
         self.prim.as_ref().map_or(Ok(()), |prim| write!(f, " of {prim}"))?;
         write!(f, ": ")?;
-        write!(f, "{}, worst ", counted(self.samples, "sample", "samples"))?;
+        write!(f, "{}, worst ", count(self.samples, "sample"))?;
         match self.times_allowed {
             Some(times) => write!(f, "{times:.1e} times what is allowed")?,
             None => write!(f, "not comparable")?,

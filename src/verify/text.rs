@@ -2,8 +2,8 @@
 
 use super::baseline::{Comparison, Regression};
 use super::difference::Sample;
-use super::failures::counted;
 use super::report::{MeshReport, Report, Tier, Unanswered};
+use crate::line::{count, counted};
 use std::fmt::{self, Write};
 
 impl MeshReport {
@@ -13,8 +13,12 @@ impl MeshReport {
         let samples: usize = self.rows().map(|row| row.samples).sum();
         let patches: usize = self.patches.values().sum();
         let mut line = format!(
-            "{verdict}  {:<width$} {:>8} faces {patches:>9} patches {samples:>9} samples",
-            self.mesh, self.faces
+            "{verdict}  {:<width$} {:>8} {:<5} {patches:>9} {:<7} {samples:>9} {}",
+            self.mesh,
+            self.faces,
+            counted(self.faces, "face"),
+            counted(patches, "patch"),
+            counted(samples, "sample")
         );
         let share = |row: &Tier| row.times_allowed.unwrap_or_default();
         let closest = self.tiers.iter().filter(|row| row.pass && row.times_allowed.is_some());
@@ -80,13 +84,13 @@ impl MeshReport {
     fn write_notes(&self, f: &mut dyn Write) -> fmt::Result {
         let skipped: usize = self.tiers.iter().map(|tier| tier.normals_skipped).sum();
         if skipped > 0 {
-            writeln!(f, "  skipped: {skipped} normals that rounding alone turns too far to be judged")?;
+            writeln!(f, "  skipped: {} that rounding alone turns too far to be judged", count(skipped, "normal"))?;
         }
         if self.reference_not_asked > 0 {
-            let count = self.reference_not_asked;
+            let samples = count(self.reference_not_asked, "sample");
             writeln!(
                 f,
-                "  Bfr: {count} samples not asked: it reads out of bounds where two faces share two edges at a vertex"
+                "  Bfr: {samples} not asked: it reads out of bounds where two faces share two edges at a vertex"
             )?;
         }
         if self.limit_masks_not_asked > 0 {
@@ -94,8 +98,9 @@ impl MeshReport {
             writeln!(f, "  limit masks: not asked: {count} so many faces that it writes beyond its arrays")?;
         }
         if self.patches_unjudged > 0 {
-            let count = counted(self.patches_unjudged, "patch is", "patches are");
-            writeln!(f, "  {count} judged at dyadic points alone: OpenSubdiv has an end cap all over")?;
+            let are = if self.patches_unjudged == 1 { "is" } else { "are" };
+            let patches = count(self.patches_unjudged, "patch");
+            writeln!(f, "  {patches} {are} judged at dyadic points alone: OpenSubdiv has an end cap all over")?;
         }
         for timing in self.timings.iter().flatten() {
             writeln!(f, "  {:<32} {:>8.3} s", timing.step, timing.seconds)?;
@@ -121,7 +126,7 @@ impl fmt::Display for MeshReport {
         let verdict = if self.pass { "pass" } else { "FAIL" };
         let patches: Vec<_> =
             self.patches.iter().filter(|(_, n)| **n > 0).map(|(kind, n)| format!("{n} {kind}")).collect();
-        writeln!(f, "{}: {verdict} ({} faces; patches: {})", self.mesh, self.faces, patches.join(", "))?;
+        writeln!(f, "{}: {verdict} ({}; patches: {})", self.mesh, count(self.faces, "face"), patches.join(", "))?;
         f.write_str(&self.table(false))
     }
 }
@@ -161,8 +166,8 @@ impl fmt::Display for Unanswered {
 
 impl fmt::Display for Comparison {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let count = counted(self.regressions.len(), "regression", "regressions");
-        writeln!(f, "baseline {}: {} compared, {count}", self.path, counted(self.rows_compared, "row", "rows"))?;
+        let regressions = count(self.regressions.len(), "regression");
+        writeln!(f, "baseline {}: {} compared, {regressions}", self.path, count(self.rows_compared, "row"))?;
         self.regressions.iter().try_for_each(|Regression { mesh, row, what }| {
             let row = row.as_ref().map(|row| format!("{row}: ")).unwrap_or_default();
             writeln!(f, "  worse  {mesh}: {row}{what}")
@@ -179,7 +184,7 @@ impl Report {
         counts.extend((failed > 0).then(|| format!("{failed} failed")));
         let allowed = if self.refused_allowed { " (allowed)" } else { "" };
         counts.extend((!self.refused.is_empty()).then(|| format!("{} refused{allowed}", self.refused.len())));
-        let meshes = counted(self.meshes.len() + self.refused.len(), "mesh", "meshes");
+        let meshes = count(self.meshes.len() + self.refused.len(), "mesh");
         format!("{verdict}: {meshes} against OpenSubdiv {}: {}", self.opensubdiv, counts.join(", "))
     }
 }

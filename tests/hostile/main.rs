@@ -2,8 +2,10 @@
 //! One line and exit code 2, and every file whole.
 
 mod degenerate;
+mod inputs;
 #[cfg(unix)]
 mod memory;
+mod mutated;
 #[cfg(unix)]
 mod streams;
 mod truncated;

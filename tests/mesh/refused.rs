@@ -29,7 +29,9 @@ fn another_format() {
         let message = mesh::read(Path::new(name)).unwrap_err().to_string();
         assert_eq!(
             message,
-            format!("{name}: only .obj, .usd, .usda, .usdc and .usdz are read; export the mesh as one of these")
+            format!(
+                "{name}: only .obj, .usd, .usda, .usdc and .usdz are read, also with .gz behind; export the mesh as one of these"
+            )
         );
     }
 }
@@ -60,7 +62,8 @@ fn a_binary_file() {
 fn text_that_is_no_obj() {
     assert_eq!(
         refusal("Dear all,\nplease find attached\n"),
-        "mesh.obj: the mesh has no vertices; give a mesh with polygons"
+        "mesh.obj: the mesh has no vertices, but unknown keywords (1 Dear, 1 please, the first in line 1), \
+         which is not read; give a mesh with polygons"
     );
 }
 
@@ -68,8 +71,9 @@ fn text_that_is_no_obj() {
 fn no_faces() {
     assert_eq!(
         refusal(format!("{QUAD}p 1\nl 1 2 3\n")),
-        "mesh.obj: the mesh has no faces; give a mesh with polygons, not points or curves alone"
+        "mesh.obj: the mesh has no faces, but lines (1 l), points (1 p), which is not read; give a mesh with polygons"
     );
+    assert_eq!(refusal(QUAD), "mesh.obj: the mesh has no faces; give a mesh with polygons, not points or curves alone");
 }
 
 #[test]
@@ -200,13 +204,33 @@ fn a_vertex_without_three_coordinates() {
 
 #[test]
 fn a_coordinate_that_is_not_finite() {
-    for (token, value) in [("nan", "NaN"), ("inf", "inf"), ("-1e999", "-inf")] {
-        // The vertex is refused even though no face uses it.
-        assert_eq!(
-            refusal(format!("v {token} 0 0\n{QUAD}f 2 3 4 5\n")),
-            format!("mesh.obj:1: coordinate {value} is not finite; correct the vertex")
-        );
+    // The vertex is refused even though no face uses it.
+    assert_eq!(
+        refusal(format!("v -1e999 0 0\n{QUAD}f 2 3 4 5\n")),
+        "mesh.obj:1: coordinate -inf is not finite; correct the vertex"
+    );
+}
+
+#[test]
+fn a_coordinate_that_a_program_could_not_compute() {
+    let computed = |token: &str, cause: &str| {
+        format!(
+            "mesh.obj:1: coordinate '{token}' is not a number, the program that wrote it {cause}; \
+             correct the vertex, or export the mesh again"
+        )
+    };
+    for token in ["nan", "NaN", "-nan", "-nan(ind)", "-1.#IND", "1.#QNAN", "-1.#IND00", "1.#SNAN"] {
+        for vertex in [format!("{token} 0 0"), format!("0 {token} 0"), format!("0 0 {token} # last")] {
+            assert_eq!(refusal(format!("v {vertex}\n{QUAD}f 2 3 4 5\n")), computed(token, "computed 0/0"));
+        }
     }
+    for token in ["inf", "-inf", "Infinity", "1.#INF", "-1.#INF00", "1.#J"] {
+        assert_eq!(refusal(format!("v 0 0 {token}\n{QUAD}f 2 3 4 5\n")), computed(token, "divided by 0 or overflowed"));
+    }
+    // Texture coordinates and normals are not read.
+    accepted(&format!("{QUAD}vt -1.#IND 0\nvn 1.#QNAN 0 0\nf 1 2 3 4\n"));
+    let sharpness = refusal(format!("{QUAD}f 1 2 3 4\nt crease 2/1/0 0 1 1.#QNAN\n"));
+    assert_eq!(sharpness, "mesh.obj:6: '1.#QNAN' is not a sharpness; correct it");
 }
 
 #[test]

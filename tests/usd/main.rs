@@ -5,6 +5,7 @@ mod common;
 #[path = "../common/rng.rs"]
 mod rng;
 
+mod bad_faces;
 mod blender;
 mod corrupt;
 mod differential;

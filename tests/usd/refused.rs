@@ -80,7 +80,7 @@ fn lengths_that_do_not_agree() {
     assert_eq!(creases("[0, -1]", "[2]", "[1]"), "mesh.usda: /m: creaseIndices has -1; use 0 and above");
     assert_eq!(
         with("int[] cornerIndices = [0, 1]\nfloat[] cornerSharpnesses = [3]"),
-        "mesh.usda: /m: cornerSharpnesses has 1 values; write 2, one for each of cornerIndices"
+        "mesh.usda: /m: cornerSharpnesses has 1 value; write 2, one for each of cornerIndices"
     );
 }
 

@@ -27,7 +27,7 @@ fn stages_move_as_in_usd_core() {
             let shown: Vec<&str> = moment.meshes.iter().map(|prim| prim.prim.as_str()).collect();
             assert_eq!(names, shown, "{} at {:?}", path.display(), moment.time);
             for (part, prim) in mesh.parts.iter().zip(&moment.meshes) {
-                let choice = Choice { prims: vec![prim.prim.clone()], time: moment.time };
+                let choice = Choice { prims: vec![prim.prim.clone()], time: moment.time, ..Choice::default() };
                 let alone = mesh::read_choice(&path, &choice).expect("a mesh");
                 assert_attributes(&alone, prim, &prim.prim);
                 let points = &mesh.points[part.points.start as usize..part.points.end as usize];

@@ -146,20 +146,18 @@ fn interior(mesh: &SubdivMesh, vertex: u32) -> bool {
 }
 
 #[test]
-fn the_corpus_passes_or_is_refused_for_the_reasons_we_know() {
+fn the_corpus_passes_without_the_bad_faces_that_we_know() {
     let gpu = Gpu::new().expect("these tests need a Vulkan adapter: script/setup installs one");
     for path in meshes("../shared/meshes/opensubdiv").iter().chain(&meshes("../shared/meshes/blender")) {
         let name = path.file_stem().expect("a file").to_string_lossy().into_owned();
         match mesh::read(path) {
             Ok(mesh) => {
+                let known = ["catmark_nonman_edges", "catmark_nonman_quadpole8"];
+                assert_eq!(!mesh.bad_faces.is_empty(), known.contains(&name.as_str()), "{:?}", mesh.notes);
                 let report = check(&gpu, &mesh);
                 println!("{name}: {} patches", report.patches.values().sum::<usize>());
             }
-            Err(error) => {
-                let known = ["catmark_nonman_edges", "catmark_nonman_quadpole8"];
-                assert!(known.contains(&name.as_str()), "{error}");
-                assert!(error.to_string().contains("twice"), "{error}");
-            }
+            Err(error) => panic!("{error}"),
         }
     }
 }

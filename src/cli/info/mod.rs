@@ -52,6 +52,8 @@ struct Info {
     /// Faces that run against their neighbours, and components with one side only.
     reversed_faces: Faces,
     one_sided_components: Faces,
+    /// Those of the holes that are faces which cannot be part of a surface.
+    bad_faces: usize,
     scheme: &'static str,
     boundary: &'static str,
     creasing: &'static str,
@@ -148,11 +150,11 @@ fn collect(mesh: &SubdivMesh, surface: &LimitSurface, control: &Level) -> Info {
         meters_per_unit: mesh.meters_per_unit,
         up: mesh.up.map(|up| up.to_array()),
         prims: prims(mesh),
-        vertices: mesh.points.len(),
+        vertices: mesh.points.len() - mesh.spare_vertices().len(),
         faces: mesh.face_count(),
         ptex_faces: surface.ptex_count(),
-        edges: control.edge_sharpness.len(),
         holes: control.face_holes.iter().filter(|&&hole| hole != 0).count(),
+        bad_faces: mesh.bad_faces.len(),
         classes: surface.classes().len(),
         stored_patches: surface.stored_patches(),
         class_table_bytes: surface.tables().iter().map(|table| table.bytes()).sum(),
@@ -191,25 +193,34 @@ fn collect(mesh: &SubdivMesh, surface: &LimitSurface, control: &Level) -> Info {
     let Orientation { reversed, one_sided } = mesh.orientation();
     info.reversed_faces = Faces::new(mesh, &reversed);
     info.one_sided_components = Faces::new(mesh, &one_sided);
-    edges(control, &mut info);
-    vertices(control, &mut info);
+    edges(mesh, control, &mut info);
+    vertices(mesh, control, &mut info);
     info
 }
 
 fn prims(mesh: &SubdivMesh) -> Vec<Prim> {
     let span = |range: &Range<u32>| [range.start, range.end - range.start];
+    let spare = mesh.spare_vertices();
+    let spare_before = |end: u32| spare.partition_point(|&vertex| vertex < end) as u32;
+    let own = |points: &Range<u32>| points.start..points.end - (spare_before(points.end) - spare_before(points.start));
     let prim = |(part, ptex): (&Part, Range<u32>)| Prim {
         prim: part.name.clone(),
         shares: part.repeats.map(|repeat| mesh.parts[repeat.part as usize].name.clone()),
         faces: span(&part.faces),
         ptex_faces: span(&ptex),
-        vertices: span(&part.points),
+        vertices: span(&own(&part.points)),
     };
     mesh.ptex_parts().iter().map(prim).collect()
 }
 
-fn edges(control: &Level, info: &mut Info) {
+fn edges(mesh: &SubdivMesh, control: &Level, info: &mut Info) {
+    // Bad faces share no edge with others.
+    let of_bad = |edge: &[i32; 2]| usize::try_from(edge[0]).is_ok_and(|face| mesh.is_bad_face(face));
     for (faces, &sharpness) in control.edge_faces.iter().zip(&control.edge_sharpness) {
+        if of_bad(faces) {
+            continue;
+        }
+        info.edges += 1;
         match faces {
             [_, -2] => info.non_manifold_edges += 1,
             [_, -1] => info.boundary_edges += 1,
@@ -224,7 +235,7 @@ fn edges(control: &Level, info: &mut Info) {
     }
 }
 
-fn vertices(control: &Level, info: &mut Info) {
+fn vertices(mesh: &SubdivMesh, control: &Level, info: &mut Info) {
     let mut faces = vec![0; control.vertex_count()];
     let mut boundary = vec![false; control.vertex_count()];
     for face in 0..control.face_count() {
@@ -236,7 +247,11 @@ fn vertices(control: &Level, info: &mut Info) {
             }
         }
     }
+    let spare = mesh.spare_vertices();
     for (vertex, &count) in faces.iter().enumerate() {
+        if spare.binary_search(&(vertex as u32)).is_ok() {
+            continue;
+        }
         let histogram = match (count, boundary[vertex]) {
             (0, _) => {
                 info.isolated_vertices += 1;
@@ -271,6 +286,7 @@ fn describe(info: &Info) -> String {
         "{} (boundary: {}, not manifold: {}, semi-sharp: {}, infinitely sharp: {})",
         info.edges, info.boundary_edges, info.non_manifold_edges, info.semi_sharp_edges, info.infinitely_sharp_edges
     );
+    let bad = if info.bad_faces > 0 { format!(", of which bad faces: {}", info.bad_faces) } else { String::new() };
     let mut rows = vec![("mesh", info.mesh.clone())];
     for Prim { prim, shares, faces, ptex_faces, .. } in &info.prims {
         let [first, count] = ptex_faces;
@@ -282,7 +298,7 @@ fn describe(info: &Info) -> String {
     rows.extend(info.up.map(|[_, y, _]| ("up", if y > 0.5 { "Y" } else { "Z" }.to_owned())));
     rows.extend([
         ("control vertices", format!("{} (isolated: {})", info.vertices, info.isolated_vertices)),
-        ("control faces", format!("{} (holes: {}; ptex faces: {})", info.faces, info.holes, info.ptex_faces)),
+        ("control faces", format!("{} (holes: {}{bad}; ptex faces: {})", info.faces, info.holes, info.ptex_faces)),
         ("faces by corners", list(&info.face_sizes)),
         ("interior valences", list(&info.interior_valences)),
         ("boundary valences", list(&info.boundary_valences)),

@@ -12,6 +12,7 @@ use super::settings::{CommandLine, mesh_digest, method_name};
 use super::{Failure, progress, refined, write_out};
 use crate::curves::{self, Curve};
 use crate::field::{Camera, Projection, Scout};
+use crate::line::count;
 use crate::output::{Lines, LinesFormat, MM_PER_PIXEL, check_writable, write_whole};
 use crate::rig::{CameraRig, Rig};
 use clap::{Args, ValueEnum};
@@ -25,7 +26,7 @@ const LEAST_TOLERANCE: f64 = 1e-12;
 
 #[derive(Debug, Args)]
 pub(super) struct LinesArgs {
-    /// Control mesh (.obj, .usd, .usda, .usdc or .usdz)
+    /// Control mesh (.obj, .usd, .usda, .usdc or .usdz, also with .gz), or - for standard input
     mesh: Option<PathBuf>,
     #[command(flatten)]
     pub(super) scene: SceneArgs,
@@ -226,10 +227,10 @@ fn say(curves: &[Curve], tolerance: f64) {
     // The sum of nothing is -0, which would be written so.
     let length = curves.iter().map(Curve::length).sum::<f64>() + 0.0;
     tell!(
-        "lines: {} curves of {} lights, {closed} of them closed, {points} points, {length:.6} world units long; chords within \
-         {tolerance:.1e}",
-        curves.len(),
-        lights.len()
+        "lines: {} of {}, {closed} of them closed, {}, {length:.6} world units long; chords within {tolerance:.1e}",
+        count(curves.len(), "curve"),
+        count(lights.len(), "light"),
+        count(points, "point")
     );
 }
 

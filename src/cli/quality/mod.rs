@@ -23,7 +23,7 @@ use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub(super) struct QualityArgs {
-    /// Control mesh (.obj, .usd, .usda, .usdc or .usdz)
+    /// Control mesh (.obj, .usd, .usda, .usdc or .usdz, also with .gz), or - for standard input
     mesh: Option<PathBuf>,
     #[command(flatten)]
     pub(super) scene: SceneArgs,

@@ -5,6 +5,7 @@ use crate::quality::{
     Break, Chain, Extremes, Feature, FeatureKind, Kind, Line, LineBreak, Nearby, Ranked, Spot, Subject, Unjudged,
     Unwelded, Vertex,
 };
+use crate::line::count;
 use crate::statistics::{exact, short};
 use glam::DVec3;
 use std::fmt::Write;
@@ -31,13 +32,13 @@ const ROUNDING: f64 = 1e-9;
 
 type Row = [String; COLUMNS.len()];
 
-/// The summary, the worst `count` of the list and the verdict.
-pub(super) fn text(verdict: &Verdict<'_>, count: usize) -> String {
+/// The summary, the worst `most` of the list and the verdict.
+pub(super) fn text(verdict: &Verdict<'_>, most: usize) -> String {
     let mut out = summary(verdict);
     let diagonal = verdict.mesh.diagonal();
     let all = verdict.judged().count();
     let rows: Vec<Row> =
-        verdict.judged().take(count).enumerate().map(|(i, ranked)| row(verdict, i + 1, ranked, diagonal)).collect();
+        verdict.judged().take(most).enumerate().map(|(i, ranked)| row(verdict, i + 1, ranked, diagonal)).collect();
     if !rows.is_empty() {
         out.push('\n');
         out += &aligned(&rows);
@@ -150,20 +151,22 @@ fn summary(verdict: &Verdict<'_>) -> String {
     let broken = verdict.ranked.iter().filter(|ranked| ranked.kind() == Kind::Feature(FeatureKind::Smooth)).count();
     let _ = writeln!(
         out,
-        "{} smooth joints at {samples} points ({broken} lines over): gap {}, angle {}, curvature {}",
-        quality.smooth_joints,
+        "{} at {} ({} over): gap {}, angle {}, curvature {}",
+        count(quality.smooth_joints, "smooth joint"),
+        count(samples, "point"),
+        count(broken, "line"),
         short(gap * verdict.limits.gap_unit()),
         angle_deg.map_or("-".to_owned(), short),
         difference.map_or("-".to_owned(), |difference| short(100.0 * difference) + " %"),
     );
     let Unjudged { edges_without_surface, nonmanifold_edges, nonmanifold_vertices } = &quality.unjudged;
-    for (count, [one, many], why) in [
-        (edges_without_surface.len(), ["edge", "edges"], "without surfaces on two sides (boundary rule none)"),
-        (nonmanifold_edges.len(), ["edge", "edges"], "not manifold"),
-        (nonmanifold_vertices.len(), ["vertex", "vertices"], "not manifold: sheets that share no edge meet there"),
+    for (unjudged, what, why) in [
+        (edges_without_surface.len(), "edge", "without surfaces on two sides (boundary rule none)"),
+        (nonmanifold_edges.len(), "edge", "not manifold"),
+        (nonmanifold_vertices.len(), "vertex", "not manifold: sheets that share no edge meet there"),
     ] {
-        if count > 0 {
-            let _ = writeln!(out, "{count} {} not judged: {why}", if count == 1 { one } else { many });
+        if unjudged > 0 {
+            let _ = writeln!(out, "{} not judged: {why}", count(unjudged, what));
         }
     }
     out += &about_the_mesh(verdict);
@@ -326,8 +329,7 @@ fn name(subject: &Subject<'_>) -> String {
                 Spot::Middle([a, b]) => format!("middle of {a}-{b}"),
                 Spot::Inside(ptex) => format!("inside ptex {ptex}"),
             };
-            let faces = if *faces == 1 { "1 face".to_owned() } else { format!("{faces} faces") };
-            format!("{spot} {}, {faces}", kind.name())
+            format!("{spot} {}, {}", kind.name(), count(*faces, "face"))
         }
     }
 }

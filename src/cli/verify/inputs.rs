@@ -1,7 +1,7 @@
 //! Which meshes to verify: files, folders and patterns.
 
 use super::super::{Failure, scene::SceneArgs};
-use crate::mesh::{self, SubdivMesh};
+use crate::mesh::{self, MeshFormat, SubdivMesh};
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
@@ -40,8 +40,11 @@ impl Input {
 
     /// Name that its report will have.
     pub fn name(&self) -> String {
-        let stem = self.path.as_ref().and_then(|path| path.file_stem());
-        stem.map_or("sample".to_owned(), |stem| stem.to_string_lossy().into_owned())
+        match (&self.named, &self.path) {
+            (Some(mesh), _) => mesh.name.clone(),
+            (None, Some(path)) => mesh::stem(path),
+            (None, None) => "sample".to_owned(),
+        }
     }
 
     /// The mesh, or one line that says why there is none.
@@ -114,6 +117,5 @@ fn walk(folder: &Path) -> Vec<Input> {
 }
 
 fn is_mesh(path: &Path) -> bool {
-    let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
-    extension.is_some_and(|extension| mesh::EXTENSIONS.contains(&extension.as_str()))
+    MeshFormat::of_path(path).is_some()
 }

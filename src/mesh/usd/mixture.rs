@@ -113,7 +113,7 @@ fn edge(a: u32, b: u32) -> [u32; 2] {
 /// Edges that have a single face.
 fn boundary_edges(mesh: &SubdivMesh) -> Vec<[u32; 2]> {
     let mut faces_at = HashMap::new();
-    for (_, face) in mesh.faces() {
+    for (_, face) in mesh.good_faces() {
         for (k, &vertex) in face.iter().enumerate() {
             *faces_at.entry(edge(vertex, face[(k + 1) % face.len()])).or_insert(0_u32) += 1;
         }
@@ -130,6 +130,8 @@ fn sharpen_lone_vertices(mesh: &mut SubdivMesh) {
     for &vertex in &mesh.face_vertices {
         faces_at[vertex as usize] += 1;
     }
+    // Those of bad faces are there for no rule.
+    mesh.spare_vertices().iter().for_each(|&vertex| faces_at[vertex as usize] = 0);
     let lone = (0..).zip(&faces_at).filter(|(_, faces)| **faces == 1);
     mesh.corners.extend(lone.map(|(vertex, _)| Corner { vertex, sharpness: INFINITE }));
 }

@@ -34,7 +34,7 @@ use openusd::sdf::{self, Value};
 use openusd::usd::{Prim, PrimPredicate, Stage};
 
 use super::error::{Place, Spot, quote};
-use super::{Choice, MeshError, SubdivMesh};
+use super::{BadFace, Choice, MeshError, SubdivMesh};
 use passed::Passed;
 use scene::Placed;
 use value::{Node, one_line};
@@ -94,18 +94,17 @@ impl fmt::Debug for File {
 }
 
 impl File {
-    /// Composes the stage.
-    pub(super) fn open(path: &Path) -> Result<Self, MeshError> {
-        let at = || Place::file(path);
+    /// Composes the stage; `file` is what messages call it, `name` what its mesh is called.
+    pub(super) fn open(path: &Path, file: &str, name: &str) -> Result<Self, MeshError> {
+        let at = || Place::with(file, Spot::Whole);
         check_readable(path)?;
         let unreadable = |error: openusd::Error| MeshError::UsdUnreadable { at: at(), reason: one_line(&error) };
         let absolute = std::path::absolute(path).map_err(|error| MeshError::Unreadable { at: at(), error })?;
         let absolute = absolute.to_str().ok_or_else(|| MeshError::PathNotText { at: at() })?;
-        let stage = open::open(absolute, &path.display().to_string())?;
+        let stage = open::open(absolute, file)?;
         let mut paths = Vec::new();
         stage.traverse(PrimPredicate::DEFAULT_PROXIES, |path| paths.push(path.clone())).map_err(unreadable)?;
-        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        Ok(Self { stage, paths, file: path.display().to_string(), name })
+        Ok(Self { stage, paths, file: file.to_owned(), name: name.to_owned() })
     }
 
     /// Reads and validates the meshes that are chosen, as one.
@@ -129,6 +128,15 @@ impl File {
             format!("{first}{others}: skeletons and blend shapes are not applied; points are those of the rest pose")
         }));
         Ok(scene)
+    }
+
+    /// What is wrong with a face of a mesh that was read, as an error.
+    pub(super) fn fault(&self, mesh: &SubdivMesh, bad: &BadFace) -> MeshError {
+        let part = mesh.parts.iter().find(|part| part.faces.contains(&bad.face));
+        let (name, start) = part.map_or(("", 0), |part| (part.name.as_str(), part.faces.start));
+        let spot = |face: usize| Spot::Part("face", face);
+        let at = Place::with(&format!("{}: {name}", self.file), spot((bad.face - start) as usize));
+        bad.fault.error(at, 0, spot)
     }
 }
 

@@ -5,8 +5,8 @@ use glam::{DMat4, DVec3};
 use super::scene::Placed;
 use super::value::Node;
 use super::{instances, motion};
-use crate::mesh::validate::{Source, check};
-use crate::mesh::{Boundary, Corner, Crease, CutFaces, MeshError, Scheme, SubdivMesh, TriangleRule};
+use crate::mesh::validate::{Source, check_indices, check_left_out};
+use crate::mesh::{Boundary, Corner, Crease, CutFaces, MeshError, Scheme, SubdivMesh, TriangleRule, bad_faces};
 
 /// Whether the prim has no faces at all.
 pub(super) fn is_empty(node: &Node<'_>) -> Result<bool, MeshError> {
@@ -27,7 +27,7 @@ pub(super) struct Unplaced {
     is_left_handed: bool,
 }
 
-/// Reads the mesh. What is wrong with faces and points shows when it is placed.
+/// Reads the mesh, its bad faces left out. What else is wrong with faces and points shows when it is placed.
 pub(super) fn read(node: &Node<'_>) -> Result<Unplaced, MeshError> {
     let mut mesh = SubdivMesh {
         name: node.source.to_owned(),
@@ -42,6 +42,8 @@ pub(super) fn read(node: &Node<'_>) -> Result<Unplaced, MeshError> {
         ..SubdivMesh::default()
     };
     mesh.triangles = triangle_rule(node, &mesh)?;
+    check_indices(&mesh, &Source { name: &mesh.name, lines: None, first_vertex: 0 })?;
+    bad_faces::leave_out(&mut mesh, None);
     Ok(Unplaced { mesh, is_left_handed: is_left_handed(node)? })
 }
 
@@ -58,7 +60,7 @@ impl Unplaced {
         let moved = mesh.points.iter().map(place).collect();
         let local = std::mem::replace(&mut mesh.points, moved);
         let cut = cut_concave_faces(&mut mesh);
-        check(&mesh, &Source { name: &mesh.name, lines: None, first_vertex: 0 })?;
+        check_left_out(&mesh, &Source { name: &mesh.name, lines: None, first_vertex: 0 })?;
         // A transform that mirrors turns the inside out once more.
         if is_left_handed != (world.determinant() < 0.0) {
             turn(&mut mesh);

@@ -6,7 +6,7 @@ use super::instances::{Extent, Originals};
 use super::mixture::{self, Rules};
 use crate::mesh::error::{Place, Spot};
 use crate::mesh::validate::check_counts;
-use crate::mesh::{Corner, Crease, CutFaces, MeshError, Part, SubdivMesh};
+use crate::mesh::{BadFace, Corner, Crease, CutFaces, MeshError, Part, SubdivMesh};
 
 /// One mesh of all, in their order, each under the path of its prim; `file` names it in messages.
 ///
@@ -78,4 +78,5 @@ fn append(scene: &mut SubdivMesh, mesh: SubdivMesh) {
     let corner = |Corner { vertex, sharpness }| Corner { vertex: vertex + points, sharpness };
     scene.corners.extend(mesh.corners.into_iter().map(corner));
     scene.holes.extend(mesh.holes.into_iter().map(|face| face + faces));
+    scene.bad_faces.extend(mesh.bad_faces.into_iter().map(|bad| BadFace { face: bad.face + faces, ..bad }));
 }

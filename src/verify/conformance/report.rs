@@ -2,6 +2,7 @@
 
 use super::diagnosis::Diagnosis;
 use super::{Answer, Finding, Nearest, Sample, Terms, Tolerances, sample_set};
+use crate::line::count;
 use crate::patch::PatchKind;
 use crate::stam::LimitSurface;
 use crate::verify::difference::{Check, Difference, Normal};
@@ -201,8 +202,9 @@ impl fmt::Display for Results {
         let Self { standard, standard_answered, .. } = self;
         writeln!(
             f,
-            "  answered: {standard_answered} of {standard} standard samples; {} answers in all",
-            self.answered
+            "  answered: {standard_answered} of {}; {} in all",
+            count(*standard, "standard sample"),
+            count(self.answered, "answer")
         )?;
         writeln!(
             f,
@@ -213,13 +215,14 @@ impl fmt::Display for Results {
             writeln!(f, "  {quantity}")?;
         }
         if self.refused > 0 {
-            writeln!(f, "  FAIL: {} points of the surface without an answer (empty or not a number)", self.refused)?;
+            let points = count(self.refused, "point");
+            writeln!(f, "  FAIL: {points} of the surface without an answer (empty or not a number)")?;
         }
         if self.in_holes > 0 {
             writeln!(
                 f,
-                "  FAIL: {} answers where the mesh has no surface (holes, or boundary rule none)",
-                self.in_holes
+                "  FAIL: {} where the mesh has no surface (holes, or boundary rule none)",
+                count(self.in_holes, "answer")
             )?;
         }
         if let Some(missing) = self.missing() {

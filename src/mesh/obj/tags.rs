@@ -5,7 +5,7 @@
 //!
 //! | tag | values |
 //! |---|---|
-//! | `crease` | a chain of n + 1 vertices, whose n edges get one sharpness or n |
+//! | `crease` | a chain of n + 1 vertices, whose n edges get one sharpness or n; or pairs of vertices with one sharpness |
 //! | `corner` | n vertices with one sharpness or n |
 //! | `hole` | faces |
 //! | `interpolateboundary` | 0 none, 1 edge and corner, 2 edge only |
@@ -14,13 +14,17 @@
 //! | `smoothtriangles` | `catmark`, `smooth`: the rule for triangles under Catmull and Clark's scheme |
 //! | `facevaryinginterpolateboundary`, `facevaryingpropagatecorners` | ignored: there is no face-varying data here |
 //!
-//! OpenSubdiv's own shape reader takes the vertices of a `crease` in pairs, RenderMan (which defined the tag) as a
-//! chain. The two agree for one edge a tag, as in all of OpenSubdiv's shapes; where they differ, the extra edges of the
-//! chain are usually no edges of the mesh, and are refused as such.
+//! OpenSubdiv's own shape reader takes the vertices of a `crease` in pairs (`assignComponentTags` in
+//! regression/common/far_utils.h), RenderMan (which defined the tag) as a chain. The two agree for one edge a tag, as
+//! in all of OpenSubdiv's shapes. Where they differ, a tag with one sharpness is pairs if all pairs are edges of the
+//! mesh and the chain has a link that is none ([`read_pairs`]).
 
-use super::error::{MeshError, Place, quote};
-use super::validate::Lines;
-use super::{Boundary, Corner, Crease, Creasing, Scheme, SubdivMesh, TriangleRule};
+use std::collections::HashMap;
+use std::ops::Range;
+
+use crate::mesh::error::{MeshError, Place, quote};
+use crate::mesh::validate::Lines;
+use crate::mesh::{Boundary, Corner, Crease, Creasing, Scheme, SubdivMesh, TriangleRule};
 
 /// The values of one tag, by kind, still as text.
 struct Values<'a> {
@@ -69,6 +73,39 @@ pub(super) fn read<F: Fn() -> Place>(
     }
 }
 
+/// Takes chains of creases as pairs where only that makes sense: all pairs are edges, and a link between two of them is
+/// none. Counts them with the other tags of pairs.
+pub(super) fn read_pairs(mesh: &mut SubdivMesh, lines: &mut Lines) {
+    if lines.chains.is_empty() {
+        return;
+    }
+    let edge = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
+    let of_chain = |chain: &Range<usize>| mesh.creases[chain.clone()].iter().map(|crease| edge(crease.vertices));
+    let mut is_edge: HashMap<[u32; 2], bool> =
+        lines.chains.iter().flat_map(of_chain).map(|edge| (edge, false)).collect();
+    for (_, face) in mesh.faces() {
+        for (k, &vertex) in face.iter().enumerate() {
+            if let Some(found) = is_edge.get_mut(&edge([vertex, face[(k + 1) % face.len()]])) {
+                *found = true;
+            }
+        }
+    }
+    let is_pairs = |chain: &Range<usize>| {
+        let is_edge: Vec<bool> = of_chain(chain).map(|edge| is_edge[&edge]).collect();
+        is_edge.iter().step_by(2).all(|&found| found) && is_edge.iter().any(|&found| !found)
+    };
+    let pairs: Vec<Range<usize>> = lines.chains.iter().filter(|chain| is_pairs(chain)).cloned().collect();
+    lines.pairs += pairs.len();
+    let mut keep = vec![true; mesh.creases.len()];
+    for index in pairs.iter().flat_map(|chain| chain.clone().skip(1).step_by(2)) {
+        keep[index] = false;
+    }
+    let mut kept = keep.iter();
+    mesh.creases.retain(|_| *kept.next().unwrap_or(&true));
+    let mut kept = keep.iter();
+    lines.creases.retain(|_| *kept.next().unwrap_or(&true));
+}
+
 /// `INTS/FLOATS/STRINGS`.
 fn read_counts(token: &[u8]) -> Option<[usize; 3]> {
     let mut fields = std::str::from_utf8(token).ok()?.split('/');
@@ -81,9 +118,13 @@ fn read_counts(token: &[u8]) -> Option<[usize; 3]> {
 
 impl<F: Fn() -> Place> Tag<'_, F> {
     fn crease(&self, mesh: &mut SubdivMesh, lines: &mut Lines) -> Result<(), MeshError> {
-        let edges = self.values.ints.len().saturating_sub(1);
+        let (ints, floats) = (self.values.ints.len(), self.values.floats.len());
+        let edges = ints.saturating_sub(1);
         let expected = "a chain of 2 ints or more, and one float or one an edge";
         self.expect_sharpness("crease", edges, expected)?;
+        if floats == 1 && ints > 2 && ints.is_multiple_of(2) {
+            lines.chains.push(mesh.creases.len()..mesh.creases.len() + edges);
+        }
         let mut ends = self.values.ints.iter().map(|int| self.index("crease", int));
         let mut start = ends.next().unwrap_or(Ok(0))?;
         for (k, end) in ends.enumerate() {

@@ -1,9 +1,16 @@
 //! OBJ, read directly: a subdivision mesh needs the vertices exactly as the file indexes them.
 //!
 //! Readers made for drawing re-index vertices and split them between groups, which would cut seams into the surface.
-//! Here `v`, `f` and OpenSubdiv's `t` tags count, and everything else is passed over: texture coordinates and normals
-//! (the limit surface has its own), groups, objects, materials, smoothing groups, points, lines and free-form geometry.
-//! Text may be ASCII, UTF-8 or Latin-1; only numbers and tag names are interpreted.
+//! Here `v`, `f`, OpenSubdiv's `t` tags and Embree's `ec` lines count. Texture coordinates and normals (the limit
+//! surface has its own), groups, objects, materials and smoothing groups are passed over, for they change no surface.
+//! Everything else is passed over with a note that names it: points, lines, free-form geometry, other files, and what
+//! no version of the format knows. Text may be ASCII, UTF-8 or Latin-1, and packed by gzip; only numbers and tag names
+//! are interpreted.
+
+mod lines;
+mod number;
+mod passed;
+mod tags;
 
 use std::fs;
 use std::io::ErrorKind;
@@ -12,23 +19,28 @@ use std::path::Path;
 use glam::DVec3;
 
 use super::error::{MeshError, Place, Spot, quote};
-use super::lines::LogicalLines;
-use super::validate::{Lines, Source, check};
-use super::{Boundary, SubdivMesh, tags};
+use super::validate::{Lines, Source, check_indices, check_left_out};
+use super::{Boundary, Crease, SubdivMesh, bad_faces, packed};
+use crate::line::count;
+use lines::LogicalLines;
+use passed::Passed;
+
+/// Sharpness of an edge that stays sharp for ever.
+const INFINITE: f32 = 10.0;
 
 /// Reads and validates the file; see [`super::read`].
-pub(super) fn read(path: &Path) -> Result<SubdivMesh, MeshError> {
+pub(super) fn read(path: &Path, name: &str, is_strict: bool) -> Result<SubdivMesh, MeshError> {
     let at = || Place::file(path);
     let text = fs::read(path).map_err(|error| match error.kind() {
         ErrorKind::NotFound => MeshError::NotFound { at: at() },
         _ => MeshError::Unreadable { at: at(), error },
     })?;
-    let name = path.file_stem().unwrap_or_default().to_string_lossy();
-    parse(&text, &path.display().to_string(), &name)
+    let text = packed::unpacked(text, at)?;
+    parse(&text, &path.display().to_string(), name, is_strict)
 }
 
-/// Reads and validates the text of an OBJ. `source` is the file's name in messages.
-pub(super) fn parse(text: &[u8], source: &str, name: &str) -> Result<SubdivMesh, MeshError> {
+/// Reads and validates the text of an OBJ. `source` is the file's name in messages; strict as in [`super::Choice`].
+pub(super) fn parse(text: &[u8], source: &str, name: &str, is_strict: bool) -> Result<SubdivMesh, MeshError> {
     if text.is_empty() {
         let at = Place::with(source, Spot::Whole);
         return Err(MeshError::EmptyFile { at });
@@ -48,25 +60,61 @@ pub(super) fn parse(text: &[u8], source: &str, name: &str) -> Result<SubdivMesh,
             ..SubdivMesh::default()
         },
         lines: Lines::default(),
+        passed: Passed::default(),
+        edge_creases: 0,
     };
     let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
     let mut lines = LogicalLines::new(text);
     while let Some((number, line)) = lines.next() {
         reader.line(number, line)?;
     }
-    reader.cut_concave_faces();
-    let source = Source { name: source, lines: Some(&reader.lines), first_vertex: 1 };
-    check(&reader.mesh, &source)?;
-    Ok(SubdivMesh { face_lines: reader.lines.faces, ..reader.mesh })
+    reader.passed.count_comments(lines.crease_comments);
+    reader.finish(is_strict)
 }
 
 struct Reader<'a> {
     source: &'a str,
     mesh: SubdivMesh,
     lines: Lines,
+    passed: Passed,
+    /// Number of Embree's lines with an edge crease.
+    edge_creases: usize,
 }
 
 impl Reader<'_> {
+    /// Validates what was read, and says what was not.
+    fn finish(mut self, is_strict: bool) -> Result<SubdivMesh, MeshError> {
+        let missing = match (&self.mesh.points[..], &self.mesh.face_sizes[..]) {
+            ([], _) => Some("vertices"),
+            (_, []) => Some("faces"),
+            _ => None,
+        };
+        if let Some(missing) = missing.filter(|_| !self.passed.is_empty()) {
+            let at = Place::with(self.source, Spot::Whole);
+            return Err(MeshError::NothingRead { at, missing, found: self.passed.to_string() });
+        }
+        let name = self.source;
+        check_indices(&self.mesh, &Source { name, lines: Some(&self.lines), first_vertex: 1 })?;
+        tags::read_pairs(&mut self.mesh, &mut self.lines);
+        bad_faces::leave_out(&mut self.mesh, Some(&mut self.lines));
+        let source = Source { name, lines: Some(&self.lines), first_vertex: 1 };
+        bad_faces::note(&mut self.mesh, is_strict, |_, bad| source.fault(bad))?;
+        self.cut_concave_faces();
+        check_left_out(&self.mesh, &Source { name, lines: Some(&self.lines), first_vertex: 1 })?;
+        if self.edge_creases > 0 {
+            let lines = count(self.edge_creases, "line");
+            self.mesh.notes.push(format!("creases are read from {lines} of Embree's form, ec WEIGHT VERTEX VERTEX"));
+        }
+        if self.lines.pairs > 0 {
+            let tags = count(self.lines.pairs, "crease tag");
+            self.mesh.notes.push(format!("{tags} read as pairs of vertices, as OpenSubdiv does, not as a chain"));
+        }
+        if !self.passed.is_empty() {
+            self.mesh.notes.push(format!("passed over: {}", self.passed));
+        }
+        Ok(SubdivMesh { face_lines: self.lines.faces, ..self.mesh })
+    }
+
     fn line(&mut self, number: u32, line: &[u8]) -> Result<(), MeshError> {
         let mut tokens = line.split(u8::is_ascii_whitespace).filter(|token| !token.is_empty());
         match tokens.next() {
@@ -78,7 +126,12 @@ impl Reader<'_> {
                 let at = || Place::with(self.source, Spot::Line(number));
                 tags::read(&tokens, number, at, &mut self.mesh, &mut self.lines)
             }
-            _ => Ok(()),
+            Some(b"ec") if self.edge_crease(number, tokens.clone()).is_some() => Ok(()),
+            Some(keyword) => {
+                self.passed.count(keyword, number);
+                Ok(())
+            }
+            None => Ok(()),
         }
     }
 
@@ -97,6 +150,22 @@ impl Reader<'_> {
         self.mesh.notes.extend(cut.notes(|face| format!("line {}", lines[face])));
     }
 
+    /// Reads an edge crease as Embree's OBJ loader does: a weight, which is a sharpness, and the ends of the edge, as
+    /// in faces. `None` if it is something else.
+    fn edge_crease<'t>(&mut self, number: u32, mut tokens: impl Iterator<Item = &'t [u8]>) -> Option<()> {
+        let weight: f32 = std::str::from_utf8(tokens.next()?).ok()?.parse().ok()?;
+        let mut end = || self.face_vertex(number, tokens.next()?).ok();
+        let vertices = [end()?, end()?];
+        if tokens.next().is_some() || weight.is_nan() {
+            return None;
+        }
+        let sharpness = if weight == f32::INFINITY { INFINITE } else { weight };
+        self.mesh.creases.push(Crease { vertices, sharpness });
+        self.lines.creases.push(number);
+        self.edge_creases += 1;
+        Some(())
+    }
+
     fn place(&self, number: u32) -> Place {
         Place::with(self.source, Spot::Line(number))
     }
@@ -106,13 +175,26 @@ impl Reader<'_> {
         for axis in 0..3 {
             let token =
                 tokens.next().ok_or_else(|| MeshError::MissingCoordinates { at: self.place(number), found: axis })?;
-            let value = std::str::from_utf8(token).ok().and_then(|text| text.parse().ok());
-            point[axis] = value.ok_or_else(|| self.not_a_number(number, token, "a coordinate"))?;
+            let value = std::str::from_utf8(token).ok().and_then(|text| text.parse::<f64>().ok());
+            point[axis] = match value {
+                Some(value) if value.is_finite() => value,
+                _ => self.odd_coordinate(number, token, value)?,
+            };
         }
         // What may follow is a weight or a colour.
         self.mesh.points.push(point);
         self.lines.vertices.push(number);
         Ok(())
+    }
+
+    /// A coordinate that is no finite number: refused, but for digits that overflow, which validation refuses.
+    fn odd_coordinate(&self, number: u32, token: &[u8], value: Option<f64>) -> Result<f64, MeshError> {
+        match number::not_finite(token) {
+            Some(what) => {
+                Err(MeshError::CoordinateNoNumber { at: self.place(number), found: quote(token), cause: what.cause() })
+            }
+            None => value.ok_or_else(|| self.not_a_number(number, token, "a coordinate")),
+        }
     }
 
     fn face<'t>(&mut self, number: u32, tokens: impl Iterator<Item = &'t [u8]>) -> Result<(), MeshError> {
