@@ -24,6 +24,7 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 
+use crate::absent::problem;
 use crate::memory;
 
 pub use error::{MeshError, Place, Spot};
@@ -87,8 +88,15 @@ impl MeshFile {
     /// A stage that cannot be read, or is not of its format, or a file too large for [`memory::limit`]. An OBJ is not looked
     /// at.
     pub fn open(path: &Path) -> Result<Self, MeshError> {
+        let size = match path.metadata() {
+            Ok(found) if found.is_dir() => return Err(MeshError::IsFolder { at: Place::file(path) }),
+            Ok(found) => found.len(),
+            // Before the extension is looked at: what is not there has no format.
+            Err(error) => {
+                return Err(MeshError::Absent { at: Place::file(path), problem: problem(path, &error) });
+            }
+        };
         // The text and what it says take about as much; a stage is read into values first.
-        let size = path.metadata().map_or(0, |file| file.len());
         memory::check(size.saturating_mul(2)).map_err(|needs| MeshError::Memory { at: Place::file(path), needs })?;
         let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
         match extension.as_deref() {

@@ -1,6 +1,6 @@
 //! OpenEXR pictures: colour, and what every pixel's centre sees, in full precision.
 
-use super::{MADE_BY, OutputError, write_whole};
+use super::{MADE_BY, OutputError, WriteSeek, write_whole};
 use crate::field::{Camera, Projection};
 use crate::gpu::{LinearFrame, NO_PATCH, PatchSource, SurfaceImage};
 use ::exr::error::Error;
@@ -94,10 +94,17 @@ pub fn world_to_ndc(camera: &Camera) -> DMat4 {
 /// # Errors
 /// As [`write_whole`]; layers that differ in size are an error too.
 pub fn write_exr(path: &Path, layers: &Layers<'_>) -> Result<(), OutputError> {
+    write_whole(path, |out| encode_exr(out, layers))
+}
+
+/// Writes the bytes of the file that [`write_exr`] makes.
+///
+/// # Errors
+/// Those of `out`; layers that differ in size.
+pub fn encode_exr(out: &mut dyn WriteSeek, layers: &Layers<'_>) -> std::io::Result<()> {
     let size @ [width, height] = layers.seen.size;
     if layers.colour.size != size || layers.camera.size != size {
-        let source = std::io::Error::other("layers differ in size");
-        return Err(OutputError { path: path.to_owned(), source });
+        return Err(std::io::Error::other("layers differ in size"));
     }
     let matrix = |matrix: DMat4| Some(matrix.to_cols_array().map(|x| x as f32));
     let mut attributes = LayerAttributes {
@@ -134,7 +141,7 @@ pub fn write_exr(path: &Path, layers: &Layers<'_>) -> Result<(), OutputError> {
         .with_pixel_fn(pixel);
     let layer = Layer::new((width as usize, height as usize), attributes, Encoding::SMALL_LOSSLESS, channels);
     let image = Image::new(ImageAttributes::with_size((width as usize, height as usize)), layer);
-    write_whole(path, |out| image.write().to_buffered(out).map_err(plain))
+    image.write().to_buffered(out).map_err(plain)
 }
 
 /// What the system said, where it is the system's fault.

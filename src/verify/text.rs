@@ -141,6 +141,18 @@ impl fmt::Display for Tier {
     }
 }
 
+impl Comparison {
+    /// How a run compares with the baseline, in a few words.
+    pub fn verdict(&self) -> String {
+        match self.regressions.len() {
+            0 => format!("nothing is worse than in the baseline {}", self.path),
+            count => {
+                format!("{} than in the baseline {}", counted(count, "thing is worse", "things are worse"), self.path)
+            }
+        }
+    }
+}
+
 impl fmt::Display for Comparison {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let count = counted(self.regressions.len(), "regression", "regressions");
@@ -162,6 +174,8 @@ impl Report {
         let allowed = if self.refused_allowed { " (allowed)" } else { "" };
         counts.extend((!self.refused.is_empty()).then(|| format!("{} refused{allowed}", self.refused.len())));
         let meshes = counted(self.meshes.len() + self.refused.len(), "mesh", "meshes");
-        format!("{verdict}: {meshes} against OpenSubdiv {}: {}", self.opensubdiv, counts.join(", "))
+        let baseline =
+            self.baseline.as_ref().map(|comparison| format!("; {}", comparison.verdict())).unwrap_or_default();
+        format!("{verdict}: {meshes} against OpenSubdiv {}: {}{baseline}", self.opensubdiv, counts.join(", "))
     }
 }
