@@ -23,9 +23,12 @@ struct Report<'a> {
 /// The work of this name.
 pub(super) fn work(name: &str) -> Result<Work, String> {
     let names = || Work::ALL.map(Work::name).join(", ");
-    let near = || nearest(name, Work::ALL.map(Work::name)).map(|near| format!("did you mean {near}? "));
     let named = Work::ALL.into_iter().find(|work| work.name() == name);
-    named.ok_or_else(|| format!("no row has this name; {}give {}", near().unwrap_or_default(), names()))
+    named.ok_or_else(|| {
+        let near = nearest(name, Work::ALL.map(Work::name));
+        let near = near.map(|near| format!(" (did you mean {near}?)")).unwrap_or_default();
+        format!("no row has this name{near}; give {}", names())
+    })
 }
 
 /// The contender of this name.

@@ -86,19 +86,12 @@ mod tests {
         fn flush(&self) {}
     }
 
-    /// What is written to standard error meanwhile is logged, and standard error is itself again afterwards.
+    /// That standard error is itself again afterwards, tests/gpu_manners.rs sees from outside.
     #[test]
     fn what_is_said_is_logged() {
         log::set_logger(&Listener).expect("the only logger");
         log::set_max_level(log::LevelFilter::Debug);
-        let place = || std::fs::read_link("/proc/self/fd/2").ok();
-        let before = place();
-        let meanwhile = hushed(|| {
-            std::io::stderr().write_all(b"a driver thinks\nof two things\n").expect("a file takes it");
-            place()
-        });
-        assert_eq!(place(), before);
-        assert!(meanwhile.is_none() || meanwhile != before);
+        hushed(|| std::io::stderr().write_all(b"a driver thinks\nof two things\n").expect("a file takes it"));
         let heard = HEARD.lock().expect("nobody panics");
         for line in ["a driver thinks", "of two things"] {
             assert!(heard.iter().any(|heard| heard.ends_with(line)), "{heard:?}");

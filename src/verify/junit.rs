@@ -17,7 +17,7 @@ impl Report {
         report.add_test_suites(self.meshes.iter().map(|mesh| {
             let mut suite = suite(mesh);
             let known = properties.iter().filter_map(|(name, value)| Some((*name, (*value)?)));
-            known.for_each(|property| drop(suite.add_property(property)));
+            suite.add_properties(known);
             suite
         }));
         report.add_test_suites(self.refused.iter().map(|refused| {

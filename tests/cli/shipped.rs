@@ -42,8 +42,8 @@ fn adapters_are_listed_and_the_chosen_one_is_marked() {
     let output = with_adapter("GeForce 9999", &["render", "--size", "8x8"]);
     let said = text(&output.stderr);
     assert_eq!(output.status.code(), Some(3), "{said}");
-    let line = format!("catoptric: CATOPTRIC_ADAPTER: no GPU adapter matches \"GeForce 9999\"; this machine has ");
-    assert!(said.starts_with(&line) && said.contains(name) && said.lines().count() == 1, "{said}");
+    let line = "catoptric: CATOPTRIC_ADAPTER: no GPU adapter matches \"GeForce 9999\"; this machine has ";
+    assert!(said.starts_with(line) && said.contains(name) && said.lines().count() == 1, "{said}");
     // Neither is work that can do without an adapter done without the one that is asked for.
     assert_eq!(with_adapter("GeForce 9999", &["verify", "--only", "0,0,0"]).status.code(), Some(3));
     let output = with_adapter("GeForce 9999", &["adapters"]);

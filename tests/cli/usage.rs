@@ -61,7 +61,7 @@ fn options_and_values_that_are_misspelt_have_suggestions() {
         ("render --field relfection", "--field relfection: did you mean reflection?"),
         ("render --pattern strips", "strips: no pattern has this name (did you mean stripes?), and no file"),
         ("render --rig tunel", "--rig tunel: no light rig has this name (did you mean tunnel?)"),
-        ("bench --only frames", "--only frames: no row has this name; did you mean frame?"),
+        ("bench --only frames", "--only frames: no row has this name (did you mean frame?)"),
         ("quality --ignore crease", "--ignore has no value 'crease' (did you mean creases?)"),
     ] {
         let words: Vec<&str> = args.split_whitespace().collect();
