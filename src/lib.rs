@@ -31,6 +31,7 @@
 //! # Ok::<(), catoptric::patch::PatchError>(())
 //! ```
 
+mod absent;
 pub mod adaptive;
 pub mod bench;
 pub mod cli;
@@ -43,6 +44,7 @@ mod kept;
 mod line;
 pub mod memory;
 pub mod mesh;
+mod nearest;
 pub mod osd;
 pub mod output;
 pub mod page;

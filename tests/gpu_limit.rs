@@ -242,7 +242,8 @@ fn regular_nets_need_no_mesh() {
 #[test]
 fn errors_name_what_is_wrong() {
     let missing = Gpu::with(&AdapterChoice::Named("no such adapter".into())).map(drop);
-    assert!(matches!(missing, Err(GpuError::NoAdapter)), "{missing:?}");
+    let Err(GpuError::UnknownAdapter { wanted, known }) = missing else { panic!("{missing:?}") };
+    assert!(wanted == "no such adapter" && known.iter().any(|name| name == gpu().adapter()), "{known:?}");
     let tables = gpu().upload(&LimitSurface::new(&pole(5, 1)).expect("it has a surface")).expect("it fits");
     let patch = tables.patches() as u32;
     let error = gpu().evaluate(&tables, &[Sample { patch, uv: [0.5; 2] }]).map(drop);

@@ -12,7 +12,7 @@ use std::path::PathBuf;
     version,
     about = "What the limit surface of a subdivision mesh really reflects",
     after_help = "Without MESH, the built-in sample is used. Exit codes: 0 done or passed, 1 a check failed, \
-                  2 bad usage or input, 3 no usable GPU adapter."
+                  2 bad usage or input, 3 no usable GPU adapter. Where a file is written, - is standard output."
 )]
 pub(super) struct Cli {
     #[command(subcommand)]
@@ -39,9 +39,29 @@ pub(super) enum Command {
     Info(InfoArgs),
     /// Measure against OpenSubdiv's evaluators, side by side, on this machine
     Bench(BenchArgs),
+    /// List the GPU adapters of this machine, the one that is used marked by a star (CATOPTRIC_ADAPTER chooses another)
+    Adapters,
+    /// Write manual pages, one a command, into a folder
+    Man(ManArgs),
+    /// Print the completions of a shell
+    Completions(CompletionsArgs),
     /// Answer for OpenSubdiv in a process of its own, which `verify` starts
     #[command(name = super::verify::WORKER, hide = true)]
     ReferenceWorker,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ManArgs {
+    /// Folder for the pages, made where it is not there
+    #[arg(value_name = "DIR")]
+    pub folder: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct CompletionsArgs {
+    /// Which shell
+    #[arg(value_enum)]
+    pub shell: clap_complete::Shell,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]

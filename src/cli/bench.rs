@@ -1,11 +1,11 @@
 //! `bench`: figures of this machine, side by side with peers.
 
 use super::args::BenchArgs;
-use super::{Failure, write_out};
+use super::{Failure, outgoing, write_out};
 use crate::bench::{self, Contender, Effort, Means, Row, Stages, Work};
 use crate::gpu::Gpu;
 use crate::line::count;
-use crate::output::check_writable;
+use crate::nearest::nearest;
 use crate::statistics::short;
 use serde::Serialize;
 use std::fmt::Write;
@@ -24,7 +24,12 @@ struct Report<'a> {
 /// The work of this name.
 pub(super) fn work(name: &str) -> Result<Work, String> {
     let names = || Work::ALL.map(Work::name).join(", ");
-    Work::ALL.into_iter().find(|work| work.name() == name).ok_or_else(|| format!("no row {name}: give {}", names()))
+    let named = Work::ALL.into_iter().find(|work| work.name() == name);
+    named.ok_or_else(|| {
+        let near = nearest(name, Work::ALL.map(Work::name));
+        let near = near.map(|near| format!(" (did you mean {near}?)")).unwrap_or_default();
+        format!("no row has this name{near}; give {}", names())
+    })
 }
 
 /// The contender of this name.
@@ -45,7 +50,7 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), Failure> {
         let stages = Stages::of(contender, path).map_err(|error| Failure::Bad(error.to_string()))?;
         return write_out(None, serde_json::to_string(&stages).expect("numbers and names").as_bytes());
     }
-    args.json.as_deref().map_or(Ok(()), check_writable)?;
+    args.json.iter().try_for_each(|path| outgoing::check(path, "--json"))?;
     let mesh = args.scene.load_quads(args.mesh.as_deref(), "bench")?;
     let gpu = match Gpu::new() {
         Ok(gpu) => Some(gpu),

@@ -1,15 +1,15 @@
 //! `render --compare`: the exact limit, OpenSubdiv's patches, and what differs.
 
-use super::Failure;
 use super::account::Account;
 use super::render::RenderArgs;
+use super::{Failure, outgoing};
 use crate::adaptive::AdaptivePatches;
 use crate::compare::{Comparison, Exact};
 use crate::gpu::{Gpu, Pipeline, Tables, View};
 use crate::line::count;
 use crate::mesh::SubdivMesh;
 use crate::osd::{EndCap, Isolation};
-use crate::output::{comparison_panels, sheet, write_png};
+use crate::output::{comparison_panels, encode_png, sheet};
 use crate::stam::LimitSurface;
 use crate::statistics::{Spread, short};
 use serde::Serialize;
@@ -63,26 +63,36 @@ impl<'a> Pair<'a> {
         &self.exact
     }
 
-    /// Draws one view of both, and what differs.
-    pub fn take(&self, path: &Path, view: &View, made_by: &str, account: &mut Account) -> Result<(), Failure> {
-        let frames = [&self.exact, &self.osd].map(|tables| self.gpu.render(tables, view));
-        let [exact, osd] = frames;
-        let frames = [exact?, osd?];
+    /// Draws one view of both, and what differs; returns the size of the picture, and tells `watch` how much of it is done.
+    pub fn take(
+        &self,
+        path: &Path,
+        view: &View,
+        made_by: &str,
+        account: &mut Account,
+        watch: &(dyn Fn(f64) + Sync),
+    ) -> Result<[u32; 2], Failure> {
+        // Four pictures, as long as one another.
+        let quarter = |k: u32| move |done: f64| watch((f64::from(k) + done) / 4.0);
+        let frames = [
+            self.gpu.watched(&quarter(0)).render(&self.exact, view)?,
+            self.gpu.watched(&quarter(1)).render(&self.osd, view)?,
+        ];
         for frame in &frames {
             account.add(&frame.timings);
             account.picture(frame.summary);
         }
         let exactly = View { pipeline: Pipeline::Exact, enlarge: 1.0, ..view.clone() };
-        let image = self.gpu.inspect(&self.exact, &exactly)?;
-        let seen = self.gpu.inspect(&self.osd, view)?;
+        let image = self.gpu.watched(&quarter(2)).inspect(&self.exact, &exactly)?;
+        let seen = self.gpu.watched(&quarter(3)).inspect(&self.osd, view)?;
         account.add(&image.timings);
         account.add(&seen.timings);
         let exact = Exact { surface: &self.surface, view, image: &image };
         let comparison = account.time("compare", || exact.compare(&self.patches, &seen));
         let (size, pixels) = sheet(comparison.size, &comparison_panels(frames, &seen, &comparison, self.name()));
-        account.time("write", || write_png(path, size, &pixels, made_by))?;
+        account.time("write", || outgoing::write(path, |out| encode_png(out, size, &pixels, made_by)))?;
         account.compared(self.compared(&comparison));
-        Ok(())
+        Ok(size)
     }
 
     fn compared(&self, comparison: &Comparison) -> Compared {

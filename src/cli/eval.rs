@@ -2,11 +2,10 @@
 
 use super::args::{Backend, EvalArgs};
 use super::rows::{Rows, check_place, parameter, shortest};
-use super::{Failure, progress, refined, write_out};
+use super::{Failure, outgoing, progress, refined, write_out};
 use crate::gpu::{self, Gpu};
 use crate::mesh::SubdivMesh;
 use crate::osd::{Answer, Far, Location, MAX_ISOLATION};
-use crate::output::check_writable;
 use crate::stam::{Jet, LimitSurface};
 use csv::StringRecord;
 use rayon::prelude::*;
@@ -30,7 +29,7 @@ impl Sample {
 }
 
 pub(super) fn run(args: &EvalArgs) -> Result<(), Failure> {
-    args.output.as_deref().map_or(Ok(()), check_writable)?;
+    args.output.iter().try_for_each(|path| outgoing::check(path, "-o"))?;
     let mesh = args.scene.load(args.mesh.as_deref())?;
     let surface = refined(&mesh, &progress("evaluating".to_owned()))?;
     let places = (surface.ptex_count(), surface.has_triangles());

@@ -1,6 +1,7 @@
 //! Files of a run that must not be one another's.
 
 use super::Failure;
+use super::outgoing::is_stdout;
 use crate::rig::{PatternName, Rig};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -39,6 +40,9 @@ impl Files {
     /// # Errors
     /// It would replace one that is known already.
     pub(super) fn write(&mut self, path: &Path, flag: &str, what: &'static str) -> Result<(), Failure> {
+        if is_stdout(path) {
+            return Ok(());
+        }
         let place = self.place(path);
         match self.known.insert(place, what) {
             Some(other) => {

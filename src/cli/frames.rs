@@ -2,6 +2,7 @@
 
 use super::Failure;
 use super::numbered::Numbered;
+use super::outgoing::is_stdout;
 use super::render::Format;
 use super::rig::orbited;
 use super::settings::method_name;
@@ -86,6 +87,10 @@ impl FramesArgs {
         let Some(numbers) = animation.or_else(|| self.frames.map(|count| (1..=count).collect())) else {
             return Ok(vec![output.to_owned()]);
         };
+        if is_stdout(output) {
+            let what = "standard output (-) takes one picture, and this is a series; name files with -o";
+            return Err(Failure::Bad(what.to_owned()));
+        }
         let last = numbers.last().copied().unwrap_or_default();
         let name = output.file_name().and_then(|name| name.to_str()).and_then(|name| Numbered::new(name, last));
         let name = name.ok_or_else(|| {
@@ -136,11 +141,11 @@ impl FramesArgs {
     ///
     /// # Errors
     /// It is a frame of other settings, or no frame of ours.
-    pub(super) fn found(&self, path: &Path, made_by: &str) -> Result<Found, Failure> {
+    pub(super) fn found(&self, path: &Path, format: Format, made_by: &str) -> Result<Found, Failure> {
         if !(self.resume && path.exists()) {
             return Ok(Found::Nothing);
         }
-        match Format::of(path)?.made_by(path) {
+        match format.made_by(path) {
             Ok(Some(found)) if found == made_by => Ok(Found::Whole),
             Ok(Some(_)) => Err(other(path, "was made with other settings")),
             Ok(None) => Err(other(path, "does not say how it was made")),

@@ -3,9 +3,8 @@
 use super::args::GlintsArgs;
 use super::rows::shortest;
 use super::scene::say_without_area;
-use super::{Failure, progress, refined, write_out};
+use super::{Failure, outgoing, progress, refined, write_out};
 use crate::field::{DEFAULT_FOV, Scout, sample_rig};
-use crate::output::check_writable;
 use crate::physical::{Nature, PathEnd, PathPoint, physical_reflections};
 use glam::DVec3;
 use serde_json::json;
@@ -13,7 +12,7 @@ use serde_json::json;
 const HEADER: &str = "light,face,u,v,x,y,z,nx,ny,nz,residual,nature";
 
 pub(super) fn run(args: &GlintsArgs) -> Result<(), Failure> {
-    args.output.as_deref().map_or(Ok(()), check_writable)?;
+    args.output.iter().try_for_each(|path| outgoing::check(path, "-o"))?;
     if args.eye_direction == Some(DVec3::ZERO) {
         return Err(Failure::Bad("--eye-direction has no direction; give one that is not 0,0,0".to_owned()));
     }

@@ -16,8 +16,12 @@ const BESIDE: usize = 2;
 pub(super) struct MemoryArgs {
     /// Memory that the command may take, such as 6GiB or 500MB: what needs more is refused beforehand [default: what is free, in
     /// the machine, its control group, and the limits of the shell]
-    #[arg(long, global = true, value_name = "SIZE")]
+    #[arg(long, global = true, value_name = "SIZE", value_parser = size)]
     memory_limit: Option<ByteSize>,
+}
+
+fn size(text: &str) -> Result<ByteSize, String> {
+    text.parse().map_err(|_| "give a size such as 6GiB or 500MB".to_owned())
 }
 
 impl MemoryArgs {

@@ -9,6 +9,7 @@ macro_rules! tell {
 }
 
 mod account;
+mod adapters;
 mod args;
 mod bench;
 mod compare;
@@ -19,8 +20,10 @@ mod frames;
 mod glints;
 mod info;
 mod lines;
+mod manual;
 mod memory;
 mod numbered;
+mod outgoing;
 mod patches;
 mod quality;
 mod render;
@@ -29,6 +32,7 @@ mod rows;
 mod scene;
 mod series;
 mod settings;
+mod usage;
 mod verify;
 
 pub use eval::parse_samples;
@@ -36,10 +40,14 @@ pub use verify::parse_answers;
 
 use args::{Cli, Command};
 use clap::Parser;
+use clap::error::ErrorKind;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::ffi::OsString;
 use std::fmt::Display;
-use std::io::Write;
+use std::io::IsTerminal;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::time::{Duration, Instant};
 
 use crate::gpu::GpuError;
 use crate::line::printable;
@@ -81,6 +89,7 @@ impl From<GpuError> for Failure {
         let limit = crate::memory::limit();
         match error {
             GpuError::NoAdapter => Self::NoAdapter(error.to_string()),
+            GpuError::UnknownAdapter { .. } => Self::NoAdapter(format!("CATOPTRIC_ADAPTER: {error}")),
             // Drivers say little of it.
             GpuError::Device { .. } if limit.cause.is_hard() => Self::Bad(format!("{error}; at the start {limit}")),
             _ => Self::Bad(error.to_string()),
@@ -107,23 +116,21 @@ impl From<std::io::Error> for Failure {
 }
 
 /// Parses the arguments of the process, runs the command and returns its exit code: 0 done or passed, 1 a check failed,
-/// 2 bad usage or input, 3 no usable GPU adapter.
-pub fn run() -> ExitCode {
-    let cli = match Cli::try_parse() {
+/// 2 bad usage or input, 3 no usable GPU adapter. `commit` is that of the source that the program was built from, for `--version`; empty
+/// where it is not known.
+pub fn run(commit: &str) -> ExitCode {
+    let args: Vec<OsString> = std::env::args_os().collect();
+    let cli = match Cli::try_parse_from(&args) {
         Ok(cli) => cli,
-        // Help and version.
+        Err(error) if error.kind() == ErrorKind::DisplayVersion => {
+            return exit_code(outgoing::say(version(commit).as_bytes()));
+        }
+        // Help.
         Err(error) if !error.use_stderr() => {
             return exit_code(check_stdout().and_then(|()| heard(error.print())));
         }
         Err(error) => {
-            // One line: what is wrong, without the usage that clap puts below it.
-            let text = error.to_string();
-            let what: Vec<&str> = text.lines().map(str::trim).take_while(|line| !line.is_empty()).collect();
-            let what = match error.kind() {
-                clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => "no command".to_owned(),
-                _ => what.join(" ").trim_start_matches("error: ").to_owned(),
-            };
-            tell!("catoptric: {}; see catoptric --help", printable(&what));
+            tell!("catoptric: {}", printable(&usage::line(&error, &args)));
             return ExitCode::from(2);
         }
     };
@@ -143,8 +150,18 @@ pub fn run() -> ExitCode {
         Command::Info(args) => info::run(&args),
         Command::Bench(args) => bench::run(&args),
         Command::ReferenceWorker => verify::work(),
+        Command::Adapters => adapters::run(),
+        Command::Man(args) => manual::man(&args),
+        Command::Completions(args) => manual::completions(&args),
     });
+    outgoing::say_written();
     exit_code(result)
+}
+
+/// One line: version, OpenSubdiv's, and the commit where it is known.
+fn version(commit: &str) -> String {
+    let commit = if commit.is_empty() { String::new() } else { format!(", commit {commit}") };
+    format!("catoptric {} (OpenSubdiv {}{commit})\n", env!("CARGO_PKG_VERSION"), crate::osd::version())
 }
 
 /// The exit code of a command, after a line that says why it stopped.
@@ -159,16 +176,12 @@ fn exit_code(result: Result<(), Failure>) -> ExitCode {
     ExitCode::from(code)
 }
 
-/// Writes to a file, whole, or to standard output.
+/// Writes a text to a file, whole, which is named at the end; `None`: what the command says, to standard output.
 fn write_out(path: Option<&PathBuf>, text: &[u8]) -> Result<(), Failure> {
-    match path {
-        Some(path) => Ok(crate::output::write_whole(path, |out| out.write_all(text))?),
-        None => {
-            check_stdout()?;
-            let mut out = std::io::stdout().lock();
-            heard(out.write_all(text).and_then(|()| out.flush()))
-        }
-    }
+    let Some(path) = path else { return outgoing::say(text) };
+    outgoing::write(path, |out| out.write_all(text))?;
+    outgoing::note(path, "");
+    Ok(())
 }
 
 /// The result of writing to standard output: whoever closed the pipe that it is (`| head -1`) has read enough, and what the command finds
@@ -198,53 +211,73 @@ fn check_stdout() -> Result<(), Failure> {
 }
 
 /// A spinner on standard error that shows what takes longer than a second, on a terminal only.
-fn progress(message: String) -> indicatif::ProgressBar {
-    let bar = indicatif::ProgressBar::new_spinner().with_message(message);
-    // It takes a thread.
-    if !bar.is_hidden() {
-        bar.enable_steady_tick(std::time::Duration::from_secs(1));
+fn progress(message: String) -> ProgressBar {
+    const PATIENCE: Duration = Duration::from_secs(1);
+    let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden()).with_message(message);
+    bar.set_style(ProgressStyle::default_spinner());
+    if std::io::stderr().is_terminal() {
+        let weak = bar.downgrade();
+        std::thread::spawn(move || {
+            std::thread::sleep(PATIENCE);
+            if let Some(bar) = weak.upgrade().filter(|bar| !bar.is_finished()) {
+                bar.set_draw_target(ProgressDrawTarget::stderr());
+                bar.enable_steady_tick(PATIENCE);
+            }
+        });
     }
     bar
 }
 
+/// Makes a spinner a bar of per cent, and returns what sets it: how much is done, from 0 to 1.
+fn percent(bar: &ProgressBar) -> impl Fn(f64) + Sync {
+    /// Steps of the bar.
+    const WHOLE: f64 = 1000.0;
+    if let Ok(style) = ProgressStyle::with_template("{msg} {bar:40} {percent} %, {eta} left") {
+        bar.set_style(style);
+    }
+    bar.set_position(0);
+    bar.set_length(WHOLE as u64);
+    bar.reset_eta();
+    let bar = bar.clone();
+    move |done| bar.set_position((done * WHOLE) as u64)
+}
+
 /// The surface of a mesh; the spinner becomes a bar meanwhile, where there is more than one piece to refine.
-fn refined(mesh: &SubdivMesh, spinner: &indicatif::ProgressBar) -> Result<LimitSurface, Failure> {
+fn refined(mesh: &SubdivMesh, spinner: &ProgressBar) -> Result<LimitSurface, Failure> {
     let message = spinner.message();
     let watch = |done: usize, pieces: usize| {
         if pieces > 1 {
             spinner.set_length(pieces as u64);
             spinner.set_position(done as u64);
-            if let Ok(style) =
-                indicatif::ProgressStyle::with_template("refining {bar:40} {pos} of {len} pieces, {eta} left")
-            {
+            if let Ok(style) = ProgressStyle::with_template("refining {bar:40} {pos} of {len} pieces, {eta} left") {
                 spinner.set_style(style);
             }
         }
     };
     let surface = LimitSurface::watched(mesh, &watch).map_err(|error| Failure::of(mesh, error));
-    spinner.set_style(indicatif::ProgressStyle::default_spinner());
+    spinner.set_style(ProgressStyle::default_spinner());
     spinner.set_message(message);
     surface
 }
 
 /// A bar on standard error that counts steps of what takes longer than a second, on a terminal only.
 struct Steps {
-    bar: indicatif::ProgressBar,
-    start: std::time::Instant,
+    bar: ProgressBar,
+    start: Instant,
 }
 
 impl Steps {
     fn new(count: usize, what: &str) -> Steps {
-        let hidden = indicatif::ProgressDrawTarget::hidden();
-        let bar = indicatif::ProgressBar::with_draw_target(Some(count as u64), hidden).with_message(what.to_owned());
-        let style = indicatif::ProgressStyle::with_template("{bar:40} {pos} of {len} {msg}, {eta} left");
-        Steps { bar: style.map(|style| bar.clone().with_style(style)).unwrap_or(bar), start: std::time::Instant::now() }
+        let hidden = ProgressDrawTarget::hidden();
+        let bar = ProgressBar::with_draw_target(Some(count as u64), hidden).with_message(what.to_owned());
+        let style = ProgressStyle::with_template("{bar:40} {pos} of {len} {msg}, {eta} left");
+        Steps { bar: style.map(|style| bar.clone().with_style(style)).unwrap_or(bar), start: Instant::now() }
     }
 
     fn done_one(&self) {
         if self.bar.is_hidden() && self.start.elapsed().as_secs() >= 1 {
             // Not a terminal: it stays hidden.
-            self.bar.set_draw_target(indicatif::ProgressDrawTarget::stderr());
+            self.bar.set_draw_target(ProgressDrawTarget::stderr());
         }
         self.bar.inc(1);
     }

@@ -10,13 +10,13 @@ use super::rig::RigArgs;
 use super::scene::{AnimationArgs, Source, say_notes, say_orientation, say_without_area};
 use super::series::Series;
 use super::settings::{MeshAt, made_by, mesh_digest};
-use super::{Failure, Steps, progress, refined};
+use super::{Failure, Steps, outgoing, percent, progress, refined};
 use crate::field::{CurvatureKind, Method, Pattern, PlaneCurve, Scout};
-use crate::gpu::{Gpu, MAX_ENLARGE, MAX_PROXY_LEVEL, MAX_SAMPLES, Pipeline, Stage, TableLayout, Tables, View, tables};
-use crate::mesh::SubdivMesh;
-use crate::output::{
-    Heat, Layers, Scale, check_writable, draw_legend, heat, read_exr_made_by, read_png_made_by, write_exr, write_png,
+use crate::gpu::{
+    Gpu, MAX_ENLARGE, MAX_PROXY_LEVEL, MAX_SAMPLES, Pipeline, Stage, TableLayout, Tables, View, Watched, tables,
 };
+use crate::mesh::SubdivMesh;
+use crate::output::{Heat, Layers, Scale, draw_legend, encode_png, heat, read_exr_made_by, read_png_made_by};
 use crate::rig::{CameraRig, FittedRig, PatternRig, Rig};
 use crate::stam::{LimitSurface, MoveError, MovingSurface};
 use clap::{Args, ValueEnum};
@@ -34,6 +34,9 @@ pub(super) struct RenderArgs {
     /// Picture to write: .png, or .exr with linear colour, position, normal, ptex parameters, field and residual
     #[arg(short, long, value_name = "FILE", default_value = "view.png")]
     pub(super) output: PathBuf,
+    /// Format of the picture, whatever its name; needed for an EXR on standard output
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    output_format: Option<Format>,
     /// Width and height in pixels [default: 1024x1024]
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<[u32; 2]>,
@@ -113,22 +116,19 @@ fn enlargement(text: &str) -> Result<f64, String> {
 }
 
 /// What is written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum Format {
     Png,
     Exr,
 }
 
 impl Format {
-    pub(super) fn of(path: &Path) -> Result<Format, Failure> {
+    fn of(path: &Path) -> Result<Format, Failure> {
         let is = |name: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(name));
         match () {
             () if is("png") => Ok(Format::Png),
             () if is("exr") => Ok(Format::Exr),
-            () => Err(Failure::Bad(format!(
-                "{}: not a picture that we write; choose a name that ends in .png or .exr",
-                path.display()
-            ))),
+            () => Err(outgoing::unknown_ending(path, "a picture", ".png or .exr")),
         }
     }
 
@@ -145,7 +145,7 @@ impl Format {
 pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let mut account = Account::default();
     let samples = if args.show.is_some() { 1 } else { args.samples };
-    let format = Format::of(&args.output)?;
+    let format = args.format()?;
     args.rig.check()?;
     let numbers = args.scene.numbers();
     args.frames.check(numbers.is_some())?;
@@ -162,13 +162,11 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     }
     let numbers_given = numbers.is_some();
     let paths = args.frames.paths(&args.output, numbers)?;
-    check_writable(&paths[0])?;
+    outgoing::check(&paths[0], "-o")?;
     // From here on no other run draws these frames.
     let _series =
         args.frames.pattern(&args.output, numbers_given).map(|name| Series::begin(&args.output, &name)).transpose()?;
-    if let Some(json) = &args.json {
-        check_writable(json)?;
-    }
+    args.json.iter().try_for_each(|path| outgoing::check(path, "--json"))?;
     let rig = args.rig()?;
     args.pattern.check(&rig)?;
     let mut files = args.rig.files(args.mesh.as_deref(), &rig);
@@ -202,8 +200,10 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
         let made_by = made_by(args, MeshAt { digest, time }, &rig, &name, &view);
         Shot { path: &paths[index], view, made_by }
     };
-    let missing = missing(args, &source, &times, &body.mesh, paths.len(), shot)?;
+    let missing = missing(args, format, &source, &times, &body.mesh, paths.len(), shot)?;
+    let mut pictures = Pictures { paths: &paths, drawn: Vec::new(), size: [0; 2], kept: paths.len() - missing.len() };
     if missing.is_empty() {
+        pictures.note();
         save_rig()?;
         return account.write(args.json.as_ref(), None, samples);
     }
@@ -214,7 +214,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
         bar.finish_and_clear();
     }
     let mut drawn: Option<Drawn<'_>> = None;
-    for index in missing {
+    let mut draw = |index: usize, account: &mut Account| -> Result<[u32; 2], Failure> {
         let time = times[index.min(times.len() - 1)];
         if times.len() > 1 && index > 0 {
             let mesh = account.time("read", || source.at(time)).map_err(Failure::Bad)?;
@@ -223,24 +223,36 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
         }
         let ready = match drawn.take() {
             Some(ready) => ready,
-            None => Drawn::new(args, &body, layout, &gpu, &mut account)?,
+            None => Drawn::new(args, &body, layout, &gpu, account)?,
         };
         let shot = shot(index, body.digest);
-        match &ready {
-            Drawn::Both(pair) => pair.take(shot.path, &shot.view, &shot.made_by, &mut account)?,
+        // Of a series, the frames are counted instead.
+        let watch: Box<dyn Fn(f64) + Sync> = if steps.is_none() { Box::new(percent(&bar)) } else { Box::new(|_| ()) };
+        let size = match &ready {
+            Drawn::Both(pair) => pair.take(shot.path, &shot.view, &shot.made_by, account, &watch)?,
             Drawn::One(tables) => {
-                shot.take(format, args.show, &gpu, tables, &mut account)?;
+                let size = shot.take(format, args.show, gpu.watched(&watch), tables, account)?;
                 // The exact pipeline counts what it sees; of the others, points of the surface are asked.
                 if shot.view.pipeline != Pipeline::Exact && times.len() == 1 && !scout.is_in_view(&shot.view.camera) {
                     account.picture_is_empty();
                 }
+                size
             }
-        }
+        };
         drawn = Some(ready);
         steps.iter().for_each(Steps::done_one);
-    }
+        Ok(size)
+    };
+    let result: Result<(), Failure> = missing.into_iter().try_for_each(|index| {
+        pictures.size = draw(index, &mut account)?;
+        pictures.drawn.push(index);
+        Ok(())
+    });
     bar.finish_and_clear();
     drop(steps);
+    // What a failure leaves is there all the same.
+    pictures.note();
+    result?;
     save_rig()?;
     if !say_without_area(&body.mesh, &scout, "nothing can be seen") {
         account.say_empty();
@@ -252,6 +264,38 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
         drawn.iter().for_each(|drawn| say_tables(args, body.surface(), drawn.tables()));
     }
     Ok(())
+}
+
+/// Which pictures of a series, or of one, are there when it ends.
+struct Pictures<'a> {
+    paths: &'a [PathBuf],
+    /// Indices of those that were drawn, in order.
+    drawn: Vec<usize>,
+    /// Width and height of each.
+    size: [u32; 2],
+    /// Pictures that `--resume` found.
+    kept: usize,
+}
+
+impl Pictures<'_> {
+    /// Notes it as one line.
+    fn note(&self) {
+        let Self { paths, drawn, size: [width, height], kept } = self;
+        let name = |index: usize| paths[index].display();
+        let kept = if *kept > 0 { format!("; {kept} were there already") } else { String::new() };
+        match drawn[..] {
+            [] if kept.is_empty() => {}
+            [] => outgoing::note_line(format!("wrote no picture: all {} were there already", paths.len())),
+            [index] if paths.len() == 1 => outgoing::note(&paths[index], &format!("{width}x{height} pixels")),
+            [index] => outgoing::note_line(format!("wrote {}, {width}x{height} pixels{kept}", name(index))),
+            [first, .., last] => outgoing::note_line(format!(
+                "wrote {} to {}, {} pictures of {width}x{height} pixels{kept}",
+                name(first),
+                name(last),
+                drawn.len()
+            )),
+        }
+    }
 }
 
 /// Bytes of the tables, by layout.
@@ -272,6 +316,7 @@ fn say_tables(args: &RenderArgs, surface: &LimitSurface, uploaded: &Tables) {
 /// `--resume` finds a picture with other settings, or cannot read the mesh of a time.
 fn missing<'a>(
     args: &RenderArgs,
+    format: Format,
     source: &Source<'_>,
     times: &[Option<f64>],
     first: &SubdivMesh,
@@ -288,7 +333,7 @@ fn missing<'a>(
             digest = mesh_digest(&source.at(times[index]).map_err(Failure::Bad)?);
         }
         let Shot { path, made_by, .. } = shot(index, digest);
-        match args.frames.found(path, &made_by)? {
+        match args.frames.found(path, format, &made_by)? {
             Found::Whole => continue,
             Found::Nothing => {}
             Found::Broken(error) => broken.push((path, error)),
@@ -387,6 +432,15 @@ impl<'a> Drawn<'a> {
 }
 
 impl RenderArgs {
+    /// What is written: as the flag says, or else the name of the file.
+    fn format(&self) -> Result<Format, Failure> {
+        match self.output_format {
+            Some(format) => Ok(format),
+            None if outgoing::is_stdout(&self.output) => Ok(Format::Png),
+            None => Format::of(&self.output),
+        }
+    }
+
     /// The layout of the tables: curvature is read from expanded ones.
     fn layout(&self, method: &Method) -> TableLayout {
         match self.layout {
@@ -440,14 +494,15 @@ struct Shot<'a> {
 }
 
 impl Shot<'_> {
+    /// Draws and writes it; returns its size in pixels.
     fn take(
         &self,
         format: Format,
         show: Option<ShowName>,
-        gpu: &Gpu,
+        gpu: Watched<'_>,
         tables: &Tables,
         account: &mut Account,
-    ) -> Result<(), Failure> {
+    ) -> Result<[u32; 2], Failure> {
         let Shot { path, view, made_by } = self;
         match (format, show) {
             (_, Some(show)) => {
@@ -458,7 +513,8 @@ impl Shot<'_> {
                     ShowName::Residual => Heat::Residual,
                     ShowName::Steps => Heat::Steps,
                 };
-                account.time("write", || write_png(path, seen.size, &heat(&seen, what), made_by))?;
+                let pixels = heat(&seen, what);
+                account.time("write", || outgoing::write(path, |out| encode_png(out, seen.size, &pixels, made_by)))?;
             }
             (Format::Png, None) => {
                 let mut frame = gpu.render(tables, view)?;
@@ -468,7 +524,9 @@ impl Shot<'_> {
                     draw_legend(frame.size, &mut frame.rgba8, &scale, &legend(&view.field.method));
                 }
                 account.picture(frame.summary);
-                account.time("write", || write_png(path, frame.size, &frame.rgba8, made_by))?;
+                account.time("write", || {
+                    outgoing::write(path, |out| encode_png(out, frame.size, &frame.rgba8, made_by))
+                })?;
             }
             (Format::Exr, None) => {
                 let (colour, seen) = (gpu.render_linear(tables, view)?, gpu.inspect(tables, view)?);
@@ -477,10 +535,10 @@ impl Shot<'_> {
                 account.picture(colour.summary);
                 let layers =
                     Layers { camera: &view.camera, colour: &colour, seen: &seen, source: tables.source(), made_by };
-                account.time("write", || write_exr(path, &layers))?;
+                account.time("write", || outgoing::write_exr(path, &layers))?;
             }
         }
-        Ok(())
+        Ok(view.camera.size)
     }
 }
 

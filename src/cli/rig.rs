@@ -3,8 +3,8 @@
 use super::Failure;
 use super::args::vector;
 use super::files::Files;
+use super::outgoing;
 use crate::field::{Camera, Light, Scout, sample_rig};
-use crate::output::{check_writable, write_whole};
 use crate::rig::{
     Attachment, CameraRig, FittedRig, LightRig, PatternRig, Preset, ProjectionName, Rig, RigError, RigFileError,
     RigFormat, checked_extents, checked_fov, checked_positive,
@@ -100,11 +100,10 @@ impl RigArgs {
             _ => {}
         }
         match &self.save_rig {
-            Some(path) if RigFormat::of(path).is_none() => Err(Failure::Bad(format!(
-                "{}: not a light rig that we write; choose a name that ends in .toml or .json",
-                path.display()
-            ))),
-            Some(path) => Ok(check_writable(path)?),
+            Some(path) if format_to_write(path).is_none() => {
+                Err(outgoing::unknown_ending(path, "a light rig", ".toml or .json"))
+            }
+            Some(path) => outgoing::check(path, "--save-rig"),
             None => Ok(()),
         }
     }
@@ -149,6 +148,10 @@ impl RigArgs {
             None => Rig::default(),
             Some(path) if RigFormat::of(path).is_some() => {
                 Rig::read(path).map_err(|error| Failure::Bad(error.to_string()))?
+            }
+            Some(path) if path.is_dir() => {
+                let what = "it is a folder; name a file in it that ends in .toml or .json";
+                return Err(Failure::Bad(format!("--rig {}: {what}", path.display())));
             }
             Some(name) => {
                 let name = name.display().to_string();
@@ -203,14 +206,19 @@ impl RigArgs {
 
     /// Writes the whole rig if a file for it is named.
     pub(super) fn save(&self, rig: &FittedRig, pattern: PatternRig) -> Result<(), Failure> {
-        let Some((path, format)) = self.save_rig.as_ref().and_then(|path| Some((path, RigFormat::of(path)?))) else {
+        let Some((path, format)) = self.save_rig.as_ref().and_then(|path| Some((path, format_to_write(path)?))) else {
             return Ok(());
         };
         let folder = path.parent().unwrap_or(Path::new(""));
         let text = rig.to_rig(pattern).write(format, folder);
         let text = text.map_err(|error| Failure::Bad(format!("{}: cannot write it: {error}", path.display())))?;
-        Ok(write_whole(path, |out| out.write_all(text.as_bytes()))?)
+        super::write_out(Some(path), text.as_bytes())
     }
+}
+
+/// How a rig is written: as its file's name says, on standard output as TOML.
+fn format_to_write(path: &Path) -> Option<RigFormat> {
+    if outgoing::is_stdout(path) { Some(RigFormat::Toml) } else { RigFormat::of(path) }
 }
 
 /// Whether the camera of a rig has parallel lines of sight.

@@ -1,6 +1,7 @@
 //! CSV files in: rows under a header, every fault with its line.
 
 use super::Failure;
+use crate::absent::problem;
 use crate::line::printable;
 use crate::osd::Location;
 use csv::StringRecord;
@@ -23,10 +24,7 @@ impl<'a> Rows<'a> {
             let path = path.display();
             Failure::Bad(format!("{path}: cannot read the {what}: {problem}; give a CSV file with the header {header}"))
         };
-        if path.is_dir() {
-            return Err(unread(&"it is a folder"));
-        }
-        let text = std::fs::read(path).map_err(|e| unread(&e))?;
+        let text = std::fs::read(path).map_err(|e| unread(&problem(path, &e)))?;
         Ok(Self { path, text })
     }
 

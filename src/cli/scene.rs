@@ -253,7 +253,7 @@ impl<'a> Source<'a> {
 fn standard_input(format: Option<MeshFormat>) -> Result<MeshFile, String> {
     const NAME: &str = "standard input";
     // The text and what it says take about as much.
-    let most = memory::limit() / 2;
+    let most = memory::limit().bytes / 2;
     let mut content = Vec::new();
     let read = std::io::stdin().lock().take(most.saturating_add(1)).read_to_end(&mut content);
     read.map_err(|error| format!("{NAME}: cannot be read ({error}); give a file"))?;

@@ -1,6 +1,7 @@
 //! Methods as they are written on the command line and in files.
 
 use super::{CurvatureKind, Grid, HighlightKind, Method, Mirrored, PlaneCurve};
+use crate::nearest::nearest;
 use std::fmt;
 use std::str::FromStr;
 
@@ -9,6 +10,20 @@ const FORMS: &str = "reflection, curve:circle, curve:ellipse=ASPECT, curve:EXPRE
                      curve:FILE.png[=WIDTH], distance, \
                      highlight[:array|signed|nearest|pseudo|alternative=RADIUS], sphere[:reflection|normal], normal, isophote, \
                      curvature[:mean|gaussian|largest|smallest], section or position";
+
+/// Names without their kinds.
+const NAMES: [&str; 10] = [
+    "reflection",
+    "curve",
+    "distance",
+    "highlight",
+    "sphere",
+    "normal",
+    "isophote",
+    "curvature",
+    "section",
+    "position",
+];
 
 /// A picture that a method names is not read: [`Grid::read`] does that.
 impl FromStr for Method {
@@ -29,7 +44,11 @@ impl FromStr for Method {
             ("curvature", Some("largest")) => Method::Curvature(CurvatureKind::Largest),
             ("curvature", Some("smallest")) => Method::Curvature(CurvatureKind::Smallest),
             ("section" | "position", None) => Method::Section,
-            _ => return Err(format!("give {FORMS}")),
+            _ => {
+                let near =
+                    nearest(name, NAMES).map(|name| format!("did you mean {name}? Otherwise ")).unwrap_or_default();
+                return Err(format!("{near}give {FORMS}"));
+            }
         };
         Ok(method)
     }

@@ -1,6 +1,8 @@
 //! A headless Vulkan device.
 
 use super::GpuError;
+use super::adapter::AdapterChoice;
+use super::hush::hushed;
 use super::pool::Pool;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -8,46 +10,6 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// 290 MiB and 17 MiB as measured, of one arena of memory.
 const ADAPTER: u64 = 340 << 20;
 const ADAPTER_THREAD: u64 = 18 << 20;
-
-/// Which adapter to use.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub enum AdapterChoice {
-    /// A real GPU where there is one, else the software adapter.
-    #[default]
-    Auto,
-    /// The software adapter (Mesa lavapipe).
-    Software,
-    /// The first adapter whose name contains this text, in any case.
-    Named(String),
-}
-
-impl AdapterChoice {
-    /// Reads `CATOPTRIC_ADAPTER`: unset or `auto`, `software`, or part of an adapter's name.
-    pub fn from_env() -> AdapterChoice {
-        match std::env::var("CATOPTRIC_ADAPTER").unwrap_or_default().as_str() {
-            "" | "auto" => AdapterChoice::Auto,
-            "software" => AdapterChoice::Software,
-            name => AdapterChoice::Named(name.to_lowercase()),
-        }
-    }
-
-    /// Rank of an adapter, lowest first; `None` if it is not wanted.
-    fn rank(&self, info: &wgpu::AdapterInfo) -> Option<u32> {
-        let by_type = match info.device_type {
-            wgpu::DeviceType::DiscreteGpu => 0,
-            wgpu::DeviceType::IntegratedGpu => 1,
-            wgpu::DeviceType::VirtualGpu => 2,
-            wgpu::DeviceType::Cpu => 3,
-            wgpu::DeviceType::Other => 4,
-        };
-        let wanted = match self {
-            AdapterChoice::Auto => true,
-            AdapterChoice::Software => info.device_type == wgpu::DeviceType::Cpu,
-            AdapterChoice::Named(name) => info.name.to_lowercase().contains(name),
-        };
-        wanted.then_some(by_type)
-    }
-}
 
 /// Device, queue and what went wrong on them.
 #[derive(Debug)]
@@ -69,18 +31,12 @@ impl Device {
     pub fn open(choice: &AdapterChoice, block_rows: u32) -> Result<Device, GpuError> {
         let threads = std::thread::available_parallelism().map_or(1, usize::from) as u64;
         crate::memory::check_granted(ADAPTER + ADAPTER_THREAD * threads)?;
-        let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
-        descriptor.backends = wgpu::Backends::VULKAN;
-        // Validation layers are the business of tests that install them; their absence must not print warnings.
-        descriptor.flags = wgpu::InstanceFlags::empty();
-        let instance = wgpu::Instance::new(descriptor);
-        let adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::VULKAN));
-        let adapter = adapters
-            .into_iter()
-            .filter_map(|adapter| Some((choice.rank(&adapter.get_info())?, adapter)))
-            .min_by_key(|(rank, _)| *rank)
-            .map(|(_, adapter)| adapter)
-            .ok_or(GpuError::NoAdapter)?;
+        hushed(|| Device::open_aloud(choice, block_rows))
+    }
+
+    /// Opens an adapter, whatever its driver prints meanwhile.
+    fn open_aloud(choice: &AdapterChoice, block_rows: u32) -> Result<Device, GpuError> {
+        let adapter = choice.find()?;
         let limits = adapter.limits();
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("catoptric"),

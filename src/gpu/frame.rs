@@ -5,6 +5,7 @@ use super::device::Device;
 use super::passes::{self, Colour, Passes, PictureTargets, Scene, SurfaceTargets, Visible};
 use super::scenes::Scenes;
 use super::view::{Tile, View};
+use super::watch::Watch;
 use super::{GpuError, Pipeline, Stage, Tables, paper};
 use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
@@ -102,8 +103,14 @@ impl SurfaceImage {
     }
 }
 
-pub(super) fn render(device: &Device, passes: &Passes, tables: &Tables, view: &View) -> Result<Frame, GpuError> {
-    let Drawn { pixels, summary, timings } = draw::<[u8; 4]>(device, passes, tables, view, Colour::Display)?;
+pub(super) fn render(
+    device: &Device,
+    passes: &Passes,
+    tables: &Tables,
+    view: &View,
+    watch: Watch<'_>,
+) -> Result<Frame, GpuError> {
+    let Drawn { pixels, summary, timings } = draw::<[u8; 4]>(device, passes, tables, view, Colour::Display, watch)?;
     Ok(Frame { size: view.camera.size, rgba8: pixels.into_flattened(), summary, timings })
 }
 
@@ -112,8 +119,9 @@ pub(super) fn render_linear(
     passes: &Passes,
     tables: &Tables,
     view: &View,
+    watch: Watch<'_>,
 ) -> Result<LinearFrame, GpuError> {
-    let Drawn { pixels: rgba, summary, timings } = draw(device, passes, tables, view, Colour::Linear)?;
+    let Drawn { pixels: rgba, summary, timings } = draw(device, passes, tables, view, Colour::Linear, watch)?;
     Ok(LinearFrame { size: view.camera.size, rgba, summary, timings })
 }
 
@@ -124,6 +132,11 @@ pub(super) struct Drawn<T> {
     pub timings: Timings,
 }
 
+/// Part of a tile's time that is gone when it is known what its samples see, and when the limit is evaluated there. `render --timings` says 0.24 and
+/// 0.61 for the sample at 2048 x 2048 pixels on the software adapter, 0.44 and 0.81 for OpenSubdiv's `catmark_car`.
+const SEEN: f64 = 0.35;
+const EVALUATED: f64 = 0.7;
+
 /// Draws a picture whose pixels are `T`, which is what `colour` comes in.
 fn draw<T: bytemuck::Pod>(
     device: &Device,
@@ -131,10 +144,11 @@ fn draw<T: bytemuck::Pod>(
     tables: &Tables,
     view: &View,
     colour: Colour,
+    watch: Watch<'_>,
 ) -> Result<Drawn<T>, GpuError> {
     view.check(tables)?;
     if view.pipeline == Pipeline::Points {
-        return paper::draw(device, passes, tables, view, colour);
+        return paper::draw(device, passes, tables, view, colour).inspect(|_| watch.tell(1.0));
     }
     let mut timings = Timings::default();
     timings.time("compile", || passes.prepare(device, view, colour));
@@ -147,14 +161,17 @@ fn draw<T: bytemuck::Pod>(
         true => Tile::cover(size, view.samples, side),
         false => Tile::cover(size, view.samples, (side - 2 * view.samples).max(view.samples)),
     };
-    for own in tiles {
+    let count = tiles.len();
+    for (i, own) in tiles.into_iter().enumerate() {
+        let watch = watch.part(i as f64 / count as f64, (i + 1) as f64 / count as f64);
         let tile = own.grown(size);
         let mut visible = Visible::new(device, &device.pool, &tile, view.pipeline);
         let picture = PictureTargets::new(device, &device.pool, &tile, colour);
-        let scene = &scenes.see(passes, &mut visible, &tile, &mut timings)?;
+        let scene = &scenes.see(passes, &mut visible, &tile, &mut timings, watch.part(0.0, SEEN))?;
         let stage = choose_stage(device, passes, scene, &visible, &picture)?;
         timings
             .time(limit_step(view), || passes::limit::run(device, passes, scene, &visible, &picture.surface, stage))?;
+        watch.tell(EVALUATED);
         timings.time("shade", || passes::shade::run(device, passes, scene, &visible, &picture, stage))?;
         timings.time("resolve", || passes::resolve::run(device, passes, scene, &picture, &tile, colour))?;
         if let (Some(summary), Some(texture)) = (&mut summary, &visible.certificate) {
@@ -163,6 +180,7 @@ fn draw<T: bytemuck::Pod>(
             *summary = summary.and(of_tile);
         }
         timings.time("read back", || read_own(device, &picture.colour, [&tile, &own], &mut whole, size))?;
+        watch.tell(1.0);
     }
     Ok(Drawn { pixels: whole, summary, timings })
 }
@@ -172,21 +190,25 @@ pub(super) fn inspect(
     passes: &Passes,
     tables: &Tables,
     view: &View,
+    watch: Watch<'_>,
 ) -> Result<SurfaceImage, GpuError> {
     view.check(tables)?;
     if view.pipeline == Pipeline::Points {
-        return paper::inspect(device, passes, tables, view);
+        return paper::inspect(device, passes, tables, view).inspect(|_| watch.tell(1.0));
     }
     let mut timings = Timings::default();
     let mut scenes = Scenes::new(device, tables, view, &mut timings)?;
     let size = view.camera.size;
     let mut image = SurfaceImage::empty(size);
-    for tile in Tile::cover(size, 1, scenes.side(Tile::SURFACE_SIDE)) {
-        let mut visible = Visible::new(device, &device.pool, &tile, view.pipeline);
-        let surface = SurfaceTargets::new(device, &tile);
-        let scene = &scenes.see(passes, &mut visible, &tile, &mut timings)?;
+    let tiles = Tile::cover(size, 1, scenes.side(Tile::SURFACE_SIDE));
+    for (i, tile) in tiles.iter().enumerate() {
+        let watch = watch.part(i as f64 / tiles.len() as f64, (i + 1) as f64 / tiles.len() as f64);
+        let mut visible = Visible::new(device, &device.pool, tile, view.pipeline);
+        let surface = SurfaceTargets::new(device, tile);
+        let scene = &scenes.see(passes, &mut visible, tile, &mut timings, watch.part(0.0, SEEN))?;
         timings.time(limit_step(view), || passes::limit::run_full(device, passes, scene, &visible, &surface))?;
-        timings.time("read back", || read_tile(device, scene, &visible, &surface, &tile, &mut image))?;
+        timings.time("read back", || read_tile(device, scene, &visible, &surface, tile, &mut image))?;
+        watch.tell(1.0);
     }
     image.timings = timings;
     Ok(image)

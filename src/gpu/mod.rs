@@ -13,12 +13,14 @@
 //! [`Gpu::inspect`] reads back what every pixel saw, [`Gpu::evaluate`] evaluates samples. All three run the same
 //! `limit_point` in WGSL.
 
+mod adapter;
 mod blocks;
 mod certificate;
 mod charts;
 mod device;
 mod fields;
 mod frame;
+mod hush;
 mod paper;
 mod passes;
 mod pool;
@@ -29,20 +31,23 @@ pub mod shader;
 pub mod tables;
 mod tessellated;
 mod view;
+mod watch;
 
 pub use crate::field::{MAX_FOV, Palette};
+pub use adapter::{Adapter, AdapterChoice, adapters};
 pub use certificate::{Certificate, State, Summary};
-pub use device::AdapterChoice;
 pub use frame::{Frame, LinearFrame, NO_PATCH, SurfaceImage, Timings};
 pub use tables::{PatchSource, TableLayout, Tables};
 pub use tessellated::{Corner, Tessellated};
 pub use view::{MAX_ENLARGE, MAX_POINTS_SIDE, MAX_PROXY_LEVEL, MAX_SAMPLES, Pipeline, Stage, View};
+pub use watch::Watched;
 
 use crate::stam::{Jet, LimitSurface};
 use device::Device;
 use passes::Passes;
 use shader::{BLOCK_ROWS, Content};
 use std::time::{Duration, Instant};
+use watch::Watch;
 
 /// Why the GPU could not do its work.
 #[derive(Debug, thiserror::Error)]
@@ -53,6 +58,14 @@ pub enum GpuError {
     /// The shell's limits leave too little for the adapter's driver, which would end the process, or hide the adapter.
     #[error("to open a GPU adapter {0}")]
     Memory(#[from] crate::memory::TooMuch),
+    /// There are adapters, but not the one that is wanted.
+    #[error("no GPU adapter matches {wanted:?}; this machine has {}; give part of a name, software or auto", known.join(", "))]
+    UnknownAdapter {
+        /// The choice, as it is written.
+        wanted: String,
+        /// Names of those that there are.
+        known: Vec<String>,
+    },
     /// The adapter failed.
     #[error("GPU adapter {adapter}: {message}")]
     Device {
@@ -87,7 +100,7 @@ pub enum GpuError {
 }
 
 impl GpuError {
-    /// Whether there is no adapter at all, rather than one that failed.
+    /// Whether there is no adapter at all, rather than one that failed or another one than is wanted.
     pub fn is_no_adapter(&self) -> bool {
         matches!(self, GpuError::NoAdapter)
     }
@@ -114,8 +127,12 @@ pub struct Gpu {
 impl Gpu {
     /// Opens the adapter that the environment asks for ([`AdapterChoice::from_env`]).
     ///
+    /// Prints nothing, whatever the driver thinks. On Unix, what the process writes to standard error in the meantime goes to the crate `log`
+    /// (level debug), that of other threads included; with `VK_LOADER_DEBUG` set, everything is printed.
+    ///
     /// # Errors
-    /// [`GpuError::NoAdapter`] where none is installed or wanted, [`GpuError::Device`] where it does not open.
+    /// [`GpuError::NoAdapter`] where none is installed, [`GpuError::UnknownAdapter`] where another one is wanted,
+    /// [`GpuError::Device`] where it does not open.
     pub fn new() -> Result<Gpu, GpuError> {
         Gpu::with(&AdapterChoice::from_env())
     }
@@ -193,7 +210,7 @@ impl Gpu {
     /// # Errors
     /// [`GpuError::View`] for a view that cannot be drawn.
     pub fn render(&self, tables: &Tables, view: &View) -> Result<Frame, GpuError> {
-        frame::render(&self.device, self.passes(tables), tables, view)
+        frame::render(&self.device, self.passes(tables), tables, view, Watch::NOBODY)
     }
 
     /// Draws a picture to work with: linear f32, premultiplied, without a background.
@@ -201,7 +218,7 @@ impl Gpu {
     /// # Errors
     /// As [`Gpu::render`].
     pub fn render_linear(&self, tables: &Tables, view: &View) -> Result<LinearFrame, GpuError> {
-        frame::render_linear(&self.device, self.passes(tables), tables, view)
+        frame::render_linear(&self.device, self.passes(tables), tables, view, Watch::NOBODY)
     }
 
     /// What every pixel's centre sees: patch, (u,v), position, normal and field.
@@ -209,7 +226,7 @@ impl Gpu {
     /// # Errors
     /// As [`Gpu::render`].
     pub fn inspect(&self, tables: &Tables, view: &View) -> Result<SurfaceImage, GpuError> {
-        frame::inspect(&self.device, self.passes(tables), tables, view)
+        frame::inspect(&self.device, self.passes(tables), tables, view, Watch::NOBODY)
     }
 }
 

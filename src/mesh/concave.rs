@@ -101,7 +101,9 @@ impl SubdivMesh {
 
     /// The first face that has to be cut under the scheme [`None`](Scheme::None).
     pub(super) fn first_concave_face(&self) -> Option<usize> {
-        self.good_faces().find(|(_, face)| matches!(cover(face, &self.points), Cover::Pieces(_))).map(|(index, _)| index)
+        self.good_faces()
+            .find(|(_, face)| matches!(cover(face, &self.points), Cover::Pieces(_)))
+            .map(|(index, _)| index)
     }
 }
 

@@ -105,6 +105,10 @@ pub(super) fn quote(token: &[u8]) -> String {
 pub enum MeshError {
     #[error("{at}: no such file; check the path")]
     NotFound { at: Place },
+    #[error("{at}: {problem}; check the path")]
+    Absent { at: Place, problem: String },
+    #[error("{at}: it is a folder, and one mesh is wanted; name a file in it")]
+    IsFolder { at: Place },
     #[error("{at}: cannot be read ({error}); give a file that you may read")]
     Unreadable { at: Place, error: io::Error },
     #[error("{at}: to be read {needs}")]

@@ -33,6 +33,7 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use tempfile::TempPath;
 
+use crate::absent::problem;
 use crate::memory;
 
 pub use bad_faces::{BadFace, Fault};
@@ -116,8 +117,13 @@ impl MeshFile {
     /// at.
     pub fn open(path: &Path) -> Result<Self, MeshError> {
         let at = || Place::file(path);
+        let size = match path.metadata() {
+            Ok(found) if found.is_dir() => return Err(MeshError::IsFolder { at: at() }),
+            Ok(found) => found.len(),
+            // Before the extension is looked at: what is not there has no format.
+            Err(error) => return Err(MeshError::Absent { at: at(), problem: problem(path, &error) }),
+        };
         // The text and what it says take about as much; a stage is read into values first.
-        let size = path.metadata().map_or(0, |file| file.len());
         memory::check(size.saturating_mul(2)).map_err(|needs| MeshError::Memory { at: at(), needs })?;
         let is_packed = matches!(packed::unpacked_path(path), Cow::Owned(_));
         match MeshFormat::of_path(path).ok_or_else(|| MeshError::UnsupportedFormat { at: at() })? {
@@ -230,7 +236,7 @@ pub enum Creasing {
 }
 
 /// How Catmull and Clark's scheme places the vertices on edges of triangles (OpenSubdiv's `TriangleSubdivision`).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum TriangleRule {
     /// As on edges of any other face.
     #[default]

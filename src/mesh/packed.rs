@@ -21,7 +21,7 @@ pub(super) fn unpacked(bytes: Vec<u8>, at: impl Fn() -> Place) -> Result<Vec<u8>
         return Ok(bytes);
     }
     // The text and what it says take about as much.
-    let most = memory::limit() / 2;
+    let most = memory::limit().bytes / 2;
     let mut text = Vec::new();
     let read = MultiGzDecoder::new(&bytes[..]).take(most.saturating_add(1)).read_to_end(&mut text);
     read.map_err(|error| MeshError::NotPacked { at: at(), error })?;

@@ -12,8 +12,8 @@
 
 use std::ops::Range;
 
-use super::error::{MeshError, Place, Spot};
 use super::bad_faces;
+use super::error::{MeshError, Place, Spot};
 use super::{BadFace, Scheme, SubdivMesh};
 
 /// Largest number of edges at a vertex, and of vertices in a face: OpenSubdiv's `Vtr::VALENCE_LIMIT` (16-bit local

@@ -1,7 +1,7 @@
 //! OpenEXR pictures: colour, and what every pixel's centre sees, in full precision.
 
 use super::whole::write_sealed;
-use super::{MADE_BY, OutputError, seal};
+use super::{MADE_BY, OutputError, WriteSeek, seal};
 use crate::field::{Camera, Projection};
 use crate::gpu::{LinearFrame, NO_PATCH, PatchSource, SurfaceImage};
 use ::exr::error::Error;
@@ -10,7 +10,7 @@ use ::exr::prelude::{
     AttributeValue, Encoding, Image, ImageAttributes, Layer, LayerAttributes, SpecificChannels, Text, WritableImage,
 };
 use glam::{DMat4, DVec2, DVec3, DVec4};
-use std::io::{BufRead, Seek};
+use std::io::{BufRead, Cursor, Seek};
 use std::path::Path;
 
 /// `ptex.face` of a pixel that sees no surface.
@@ -100,10 +100,25 @@ pub fn world_to_ndc(camera: &Camera) -> DMat4 {
 /// # Errors
 /// As [`write_whole`]; layers that differ in size are an error too.
 pub fn write_exr(path: &Path, layers: &Layers<'_>) -> Result<(), OutputError> {
+    write_sealed(path, |out| encode(out, layers), |file| seal::write(file, DIGEST_MARK))
+}
+
+/// The bytes of the file that [`write_exr`] makes.
+///
+/// # Errors
+/// Layers that differ in size.
+pub fn exr_bytes(layers: &Layers<'_>) -> std::io::Result<Vec<u8>> {
+    let mut file = Cursor::new(Vec::new());
+    encode(&mut file, layers)?;
+    seal::write(&mut file, DIGEST_MARK)?;
+    Ok(file.into_inner())
+}
+
+/// All but the digest.
+fn encode(out: &mut dyn WriteSeek, layers: &Layers<'_>) -> std::io::Result<()> {
     let size @ [width, height] = layers.seen.size;
     if layers.colour.size != size || layers.camera.size != size {
-        let source = std::io::Error::other("layers differ in size");
-        return Err(OutputError { path: path.to_owned(), source });
+        return Err(std::io::Error::other("layers differ in size"));
     }
     let matrix = |matrix: DMat4| Some(matrix.to_cols_array().map(|x| x as f32));
     let mut attributes = LayerAttributes {
@@ -141,7 +156,7 @@ pub fn write_exr(path: &Path, layers: &Layers<'_>) -> Result<(), OutputError> {
         .with_pixel_fn(pixel);
     let layer = Layer::new((width as usize, height as usize), attributes, Encoding::SMALL_LOSSLESS, channels);
     let image = Image::new(ImageAttributes::with_size((width as usize, height as usize)), layer);
-    write_sealed(path, |out| image.write().to_buffered(out).map_err(plain), |file| seal::write(file, DIGEST_MARK))
+    image.write().to_buffered(out).map_err(plain)
 }
 
 /// What the system said, where it is the system's fault.

@@ -1,6 +1,6 @@
 //! PNG pictures.
 
-use super::{MADE_BY, OutputError, write_whole};
+use super::{MADE_BY, OutputError, WriteSeek, write_whole};
 use std::io::{BufRead, Seek, SeekFrom};
 use std::path::Path;
 
@@ -10,21 +10,27 @@ use std::path::Path;
 /// # Errors
 /// As [`write_whole`]; a picture whose bytes do not match its size is an error too.
 pub fn write_png(path: &Path, size: [u32; 2], rgba8: &[u8], made_by: &str) -> Result<(), OutputError> {
-    write_whole(path, |out| {
-        let mut encoder = png::Encoder::new(out, size[0], size[1]);
-        encoder.set_color(png::ColorType::Rgba);
-        encoder.set_depth(png::BitDepth::Eight);
-        // Adaptive filters pay on smooth shading; the fast level costs a tenth of the size and a third of the time.
-        encoder.set_compression(png::Compression::Fast);
-        encoder.set_filter(png::Filter::Adaptive);
-        let write = || {
-            encoder.add_itxt_chunk(MADE_BY.to_owned(), made_by.to_owned())?;
-            let mut writer = encoder.write_header()?;
-            writer.write_image_data(rgba8)?;
-            writer.finish()
-        };
-        write().map_err(plain)
-    })
+    write_whole(path, |out| encode_png(out, size, rgba8, made_by))
+}
+
+/// Writes the bytes of the file that [`write_png`] makes.
+///
+/// # Errors
+/// Those of `out`; a picture whose bytes do not match its size.
+pub fn encode_png(out: &mut dyn WriteSeek, size: [u32; 2], rgba8: &[u8], made_by: &str) -> std::io::Result<()> {
+    let mut encoder = png::Encoder::new(out, size[0], size[1]);
+    encoder.set_color(png::ColorType::Rgba);
+    encoder.set_depth(png::BitDepth::Eight);
+    // Adaptive filters pay on smooth shading; the fast level costs a tenth of the size and a third of the time.
+    encoder.set_compression(png::Compression::Fast);
+    encoder.set_filter(png::Filter::Adaptive);
+    let write = || {
+        encoder.add_itxt_chunk(MADE_BY.to_owned(), made_by.to_owned())?;
+        let mut writer = encoder.write_header()?;
+        writer.write_image_data(rgba8)?;
+        writer.finish()
+    };
+    write().map_err(plain)
 }
 
 /// What the system said, where it is the system's fault.

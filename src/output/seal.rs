@@ -3,7 +3,6 @@
 //! The file is written with a mark and room for sixteen digits after it, which count as `0` in the digest.
 
 use crate::digest::{START, fnv1a};
-use std::fs::File;
 use std::io::{Error, Read, Result, Seek, SeekFrom, Write};
 
 /// Digits of a digest, and what stands in their place while it is computed.
@@ -44,9 +43,9 @@ fn read(mut file: impl Read, mark: &[u8]) -> Result<Option<Sealed>> {
 ///
 /// # Errors
 /// Those of the file; it has no mark.
-pub(super) fn write(mut file: &File, mark: &[u8]) -> Result<()> {
+pub(super) fn write(mut file: impl Read + Write + Seek, mark: &[u8]) -> Result<()> {
     file.rewind()?;
-    let sealed = read(file, mark)?.ok_or_else(|| Error::other("it has no room for its digest"))?;
+    let sealed = read(&mut file, mark)?.ok_or_else(|| Error::other("it has no room for its digest"))?;
     file.seek(SeekFrom::Start(sealed.at))?;
     file.write_all(format!("{:016x}", sealed.digest).as_bytes())
 }

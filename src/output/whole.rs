@@ -96,8 +96,8 @@ fn beside(path: &Path) -> std::io::Result<tempfile::NamedTempFile> {
         return Err(std::io::Error::other("it is a folder"));
     }
     let folder = folder_of(path);
-    if !folder.is_dir() {
-        return Err(std::io::Error::other(format!("the folder {} does not exist", folder.display())));
+    if let Some(problem) = crate::absent::no_folder(Some(folder)) {
+        return Err(std::io::Error::other(problem));
     }
     let mut file = tempfile::Builder::new();
     file.prefix(PREFIX).suffix(SUFFIX);

@@ -15,21 +15,20 @@ use askama::Template;
 use chart::{Axis, Chart};
 use std::borrow::Borrow;
 
-/// The report as HTML. `adapter`: what drew the fragments; `pictures`: of each mesh, in the order of the report, or none.
+/// The report as HTML. `pictures`: of each mesh, in the order of the report, or none.
 ///
 /// # Errors
 /// A value cannot be written as text, which does not happen.
-pub fn page(report: &Report, adapter: Option<&str>, pictures: &[Pictures]) -> Result<String, askama::Error> {
+pub fn page(report: &Report, pictures: &[Pictures]) -> Result<String, askama::Error> {
     let none = Pictures::default();
     let meshes = report.meshes.iter().enumerate().map(|(i, mesh)| Mesh::new(mesh, pictures.get(i).unwrap_or(&none)));
-    Page { report, adapter, meshes: meshes.collect() }.render()
+    Page { report, meshes: meshes.collect() }.render()
 }
 
 #[derive(Template)]
 #[template(path = "report.html")]
 struct Page<'a> {
     report: &'a Report,
-    adapter: Option<&'a str>,
     meshes: Vec<Mesh<'a>>,
 }
 

@@ -1,6 +1,7 @@
 //! Rigs as TOML or JSON files; every fault with its line.
 
 use super::{PatternName, Rig, RigError};
+use crate::absent::problem;
 use crate::field::Method;
 use crate::line::printable;
 use std::path::{Path, PathBuf};
@@ -106,8 +107,9 @@ impl Rig {
         let format = RigFormat::of(path).ok_or_else(|| {
             error(None, "not a light rig that we read; choose a name that ends in .toml or .json".to_owned())
         })?;
-        let text = std::fs::read_to_string(path)
-            .map_err(|e| error(None, format!("cannot read the light rig ({e}); give a TOML or JSON file")))?;
+        let text = std::fs::read_to_string(path).map_err(|e| {
+            error(None, format!("cannot read the light rig: {}; give a TOML or JSON file", problem(path, &e)))
+        })?;
         let mut rig = Rig::parse(&text, format, path)?;
         if let Some(PatternName::File(picture)) = &mut rig.pattern.name {
             let found = path.parent().unwrap_or(Path::new("")).join(&*picture);

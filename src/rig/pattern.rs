@@ -1,7 +1,9 @@
 //! The shape of the lights, as rigs say it.
 
 use super::values;
+use crate::absent::problem;
 use crate::field::{Method, Pattern, Picture};
+use crate::nearest::nearest;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -108,12 +110,23 @@ impl PatternRig {
 }
 
 fn picture(path: &Path) -> Result<Picture, String> {
+    const NAMES: [&str; 5] = ["stripes", "lattice", "circles", "band", "heat"];
     let bad = |what: String| {
         let names = "stripes, lattice, circles, band, heat or a PNG file";
         format!("{}: {what}; give {names}", path.display())
     };
-    let reader = image::ImageReader::open(path).map_err(|e| bad(format!("cannot read the pattern ({e})")))?;
-    let reader = reader.with_guessed_format().map_err(|e| bad(format!("cannot read the pattern ({e})")))?;
+    let unread = |e: std::io::Error| {
+        // A name that is no path is a name misspelt.
+        let is_name =
+            e.kind() == std::io::ErrorKind::NotFound && path.extension().is_none() && path.iter().count() == 1;
+        let near = is_name.then(|| nearest(&path.to_string_lossy(), NAMES)).flatten();
+        match near {
+            Some(name) => bad(format!("no pattern has this name (did you mean {name}?), and no file")),
+            None => bad(format!("cannot read the pattern: {}", problem(path, &e))),
+        }
+    };
+    let reader = image::ImageReader::open(path).map_err(unread)?;
+    let reader = reader.with_guessed_format().map_err(unread)?;
     let picture = reader.decode().map_err(|e| bad(format!("not a picture we read ({e})")))?.to_rgba8();
     Ok(Picture { size: [picture.width(), picture.height()], rgba8: picture.into_raw() })
 }

@@ -2,6 +2,7 @@
 
 use super::{Colour, Colours, LightRig, PatternName, PatternRig, Rig};
 use crate::field::{Camera, Field, HighlightKind, Light, Method, Mirrored, Scout};
+use crate::nearest::nearest;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -120,8 +121,10 @@ impl FromStr for Preset {
 
     fn from_str(text: &str) -> Result<Preset, String> {
         Preset::ALL.into_iter().find(|preset| preset.name() == text).ok_or_else(|| {
-            let names = Preset::ALL.map(Preset::name).join(", ");
-            format!("no light rig has this name; give {names}, or a file that ends in .toml or .json")
+            let names = Preset::ALL.map(Preset::name);
+            let near = nearest(text, names).map(|name| format!(" (did you mean {name}?)")).unwrap_or_default();
+            let names = names.join(", ");
+            format!("no light rig has this name{near}; give {names}, or a file that ends in .toml or .json")
         })
     }
 }

@@ -9,7 +9,17 @@ impl Report {
     /// the tier only reports) are skipped, with the reason: they are no passes.
     pub fn junit(&self) -> Result<String, quick_junit::SerializeError> {
         let mut report = quick_junit::Report::new("catoptric verify");
-        report.add_test_suites(self.meshes.iter().map(suite));
+        let properties = [
+            ("catoptric", Some(self.version)),
+            ("opensubdiv", Some(&*self.opensubdiv)),
+            ("adapter", self.adapter.as_deref()),
+        ];
+        report.add_test_suites(self.meshes.iter().map(|mesh| {
+            let mut suite = suite(mesh);
+            let known = properties.iter().filter_map(|(name, value)| Some((*name, (*value)?)));
+            suite.add_properties(known);
+            suite
+        }));
         report.add_test_suites(self.refused.iter().map(|refused| {
             let status = match self.refused_allowed {
                 true => skipped(&refused.reason),
@@ -19,9 +29,11 @@ impl Report {
         }));
         if let Some(baseline) = &self.baseline {
             let mut suite = TestSuite::new("baseline");
+            suite.add_property(("verdict", &*self.verdict));
             for regression in &baseline.regressions {
                 let row = regression.row.as_deref().unwrap_or("mesh");
-                let status = not_passed(NonSuccessKind::Failure, &regression.what);
+                let what = format!("worse than in the baseline {}: {}", baseline.path, regression.what);
+                let status = not_passed(NonSuccessKind::Failure, &what);
                 suite.add_test_case(case(&regression.mesh, row, status));
             }
             if baseline.regressions.is_empty() {

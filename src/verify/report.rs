@@ -153,8 +153,12 @@ pub struct Report {
     pub version: &'static str,
     /// Version of OpenSubdiv.
     pub opensubdiv: String,
-    /// All meshes pass, and none was refused that must not be.
+    /// Name of the GPU adapter whose pictures tier `fragment` checks; absent where none took part (`--results`).
+    pub adapter: Option<String>,
+    /// All meshes pass, none was refused that must not be, and nothing is worse than in the baseline.
     pub pass: bool,
+    /// The same in words, with counts: what failed the run.
+    pub verdict: String,
     /// Width and height of the view that the fragment tier checks.
     pub size: [u32; 2],
     /// The meshes.
@@ -175,9 +179,25 @@ impl Report {
     pub fn new(size: [u32; 2], meshes: Vec<MeshReport>, refused: Vec<Refused>) -> Self {
         let version = env!("CARGO_PKG_VERSION");
         let opensubdiv = crate::osd::version().to_string();
-        let (schema, refused_allowed, baseline) = (Self::SCHEMA, false, None);
-        let report = Self { schema, version, opensubdiv, pass: true, size, meshes, refused, refused_allowed, baseline };
+        let report = Self {
+            schema: Self::SCHEMA,
+            version,
+            opensubdiv,
+            adapter: None,
+            pass: true,
+            verdict: String::new(),
+            size,
+            meshes,
+            refused,
+            refused_allowed: false,
+            baseline: None,
+        };
         report.judged()
+    }
+
+    /// Names the adapter that took part.
+    pub fn with_adapter(self, name: &str) -> Self {
+        Self { adapter: Some(name.to_owned()), ..self }
     }
 
     /// Lets refused meshes pass.
@@ -195,7 +215,8 @@ impl Report {
         let meshes = self.meshes.iter().all(|mesh| mesh.pass);
         let refused = self.refused_allowed || self.refused.is_empty();
         let baseline = self.baseline.as_ref().is_none_or(|comparison| comparison.regressions.is_empty());
-        Self { pass: meshes && refused && baseline, ..self }
+        let judged = Self { pass: meshes && refused && baseline, ..self };
+        Self { verdict: judged.verdict(), ..judged }
     }
 }
 

@@ -94,8 +94,8 @@ impl MeshReport {
             )?;
         }
         if self.limit_masks_not_asked > 0 {
-            let count = counted(self.limit_masks_not_asked, "vertex has", "vertices have");
-            writeln!(f, "  limit masks: not asked: {count} so many faces that it writes beyond its arrays")?;
+            let vertices = count(self.limit_masks_not_asked, "vertex");
+            writeln!(f, "  limit masks: not asked: {vertices} with so many faces that it writes beyond its arrays")?;
         }
         if self.patches_unjudged > 0 {
             let are = if self.patches_unjudged == 1 { "is" } else { "are" };
@@ -164,6 +164,17 @@ impl fmt::Display for Unanswered {
     }
 }
 
+impl Comparison {
+    /// How a run compares with the baseline, in a few words.
+    pub fn verdict(&self) -> String {
+        match self.regressions.len() {
+            0 => format!("nothing is worse than in the baseline {}", self.path),
+            1 => format!("1 thing is worse than in the baseline {}", self.path),
+            number => format!("{number} things are worse than in the baseline {}", self.path),
+        }
+    }
+}
+
 impl fmt::Display for Comparison {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let regressions = count(self.regressions.len(), "regression");
@@ -185,6 +196,8 @@ impl Report {
         let allowed = if self.refused_allowed { " (allowed)" } else { "" };
         counts.extend((!self.refused.is_empty()).then(|| format!("{} refused{allowed}", self.refused.len())));
         let meshes = count(self.meshes.len() + self.refused.len(), "mesh");
-        format!("{verdict}: {meshes} against OpenSubdiv {}: {}", self.opensubdiv, counts.join(", "))
+        let baseline =
+            self.baseline.as_ref().map(|comparison| format!("; {}", comparison.verdict())).unwrap_or_default();
+        format!("{verdict}: {meshes} against OpenSubdiv {}: {}{baseline}", self.opensubdiv, counts.join(", "))
     }
 }

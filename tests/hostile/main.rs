@@ -36,8 +36,7 @@ impl Folder {
 
     fn command(&self, args: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_catoptric"));
-        // Without the layer that would make the program start again.
-        command.args(args).current_dir(self.0.path()).env("NODEVICE_SELECT", "1");
+        command.args(args).current_dir(self.0.path());
         command
     }
 

@@ -10,7 +10,7 @@ use crate::{QUAD, accepted, refusal};
 #[test]
 fn a_file_that_is_not_there() {
     let error = mesh::read(Path::new("no/such/file.obj")).unwrap_err();
-    assert_eq!(error.to_string(), "no/such/file.obj: no such file; check the path");
+    assert_eq!(error.to_string(), "no/such/file.obj: no such file: the folder no does not exist; check the path");
 }
 
 #[test]
@@ -19,14 +19,20 @@ fn a_folder_in_place_of_a_file() {
     let path = folder.path().join("folder.obj");
     fs::create_dir(&path).unwrap();
     let message = mesh::read(&path).unwrap_err().to_string();
-    assert!(message.contains("folder.obj: cannot be read ("), "{message}");
-    assert!(message.ends_with("; give a file that you may read"), "{message}");
+    assert!(message.ends_with("folder.obj: it is a folder, and one mesh is wanted; name a file in it"), "{message}");
 }
 
 #[test]
 fn another_format() {
+    let folder = tempfile::tempdir().unwrap();
     for name in ["car.fbx", "car.usdx", "car", "obj"] {
-        let message = mesh::read(Path::new(name)).unwrap_err().to_string();
+        let path = folder.path().join(name);
+        // What is not there has no format.
+        let missing = mesh::read(&path).unwrap_err().to_string();
+        assert!(missing.contains(": no such file") && missing.ends_with("; check the path"), "{missing}");
+        fs::write(&path, "v 0 0 0\n").unwrap();
+        let message = mesh::read(&path).unwrap_err().to_string();
+        let name = path.display();
         assert_eq!(
             message,
             format!(

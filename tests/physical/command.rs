@@ -63,7 +63,7 @@ fn files_defaults_and_faults() {
         (vec!["cube.obj"], "--light-point"),
         (vec!["cube.obj", "--light-point=1,2"], "three finite numbers"),
         (vec!["cube.obj", LIGHTS[0], "--eye-direction=0,0,0"], "--eye-direction"),
-        (vec!["cube.obj", LIGHTS[0], EYE, "--eye-direction=0,0,1"], "cannot be used"),
+        (vec!["cube.obj", LIGHTS[0], EYE, "--eye-direction=0,0,1"], "does not go with"),
         (vec!["nothing.obj", LIGHTS[0]], "nothing.obj"),
     ] {
         let output = glints(&args);

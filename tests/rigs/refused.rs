@@ -88,7 +88,8 @@ fn files_and_flags_that_do_not_fit_are_refused() {
     for (args, expected) in [
         (&["--rig", "no-such-preset"][..], "give tunnel, showroom, zebra, lattice, circles, highlight, or a file"),
         (&["--rig", "no-such.toml"], "no-such.toml: cannot read"),
-        (&["--rig", "."], "no light rig has this name"),
+        (&["--rig", "."], "--rig .: it is a folder"),
+        (&["--rig", "tunel"], "(did you mean tunnel?)"),
         (&["--rig", "bytes.toml"], "bytes.toml: cannot read"),
         (&["--rig", "rig.yaml"], "ends in .toml or .json"),
         (&["--rig", "flat.toml", "--fov", "30"], "--fov does not apply"),

@@ -20,6 +20,17 @@ fn regressions(folder: &Path, change: impl FnOnce(&mut Value)) -> Vec<String> {
     assert_eq!(text(&output.stdout).matches("  worse  ").count(), lines.len());
     let junit = fs::read_to_string(folder.join("v.xml")).expect("it was written");
     assert!(junit.contains(&format!("failures=\"{}\"", lines.len())), "{junit}");
+    assert_eq!(junit.matches("worse than in the baseline changed.json: ").count(), 2 * lines.len(), "{junit}");
+    let count = match lines.len() {
+        0 => "nothing is worse".to_owned(),
+        1 => "1 thing is worse".to_owned(),
+        many => format!("{many} things are worse"),
+    };
+    let verdict = new["verdict"].as_str().expect("a text");
+    assert!(verdict.ends_with(&format!("; {count} than in the baseline changed.json")), "{verdict}");
+    assert!(verdict.starts_with(if lines.is_empty() { "pass: " } else { "FAIL: " }), "{verdict}");
+    assert!(text(&output.stdout).lines().last().is_some_and(|line| line.starts_with(verdict)), "{verdict}");
+    assert!(junit.contains(&format!("name=\"verdict\" value=\"{verdict}\"")), "{junit}");
     lines
 }
 
@@ -79,6 +90,10 @@ fn a_planted_error_is_worse_than_before() {
     let output = run(folder.path(), &["cube.obj", "--baseline", "old.json", "--plant", "point:5"]);
     assert_eq!(output.status.code(), Some(1));
     assert!(text(&output.stdout).contains("limit stencils level 10: it passed then and fails now"));
+    let html = ["cube.obj", "--baseline", "old.json", "--plant", "point:5", "--html", "v.html"];
+    assert_eq!(run(folder.path(), &html).status.code(), Some(1));
+    let page = fs::read_to_string(folder.path().join("v.html")).expect("it was written");
+    assert!(page.contains("than in the baseline old.json"), "the page says so too");
 }
 
 #[test]

@@ -71,3 +71,21 @@ fn junit_says_failed_where_and_skips_what_judges_nothing() {
     assert!(shown.status.success() && text(&shown.stdout).contains("patch 3 (smooth)"), "{}", text(&shown.stderr));
     assert!(text(&output.stdout).contains(command), "the text names it too");
 }
+
+#[test]
+fn the_adapter_is_named_in_the_reports() {
+    let folder = folder(&["cube"]);
+    let output = run(folder.path(), &["cube.obj", "--json", "v.json", "--junit", "v.xml"]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    assert_eq!(text(&output.stderr), "wrote v.json\nwrote v.xml\n");
+    let report = json(&folder.path().join("v.json"));
+    let adapter = super::gpu().adapter().to_owned();
+    assert_eq!(report["adapter"], adapter);
+    let junit = fs::read_to_string(folder.path().join("v.xml")).expect("it was written");
+    for (name, value) in [("adapter", &*adapter), ("opensubdiv", &catoptric::osd::version().to_string())] {
+        assert!(junit.contains(&format!("<property name=\"{name}\" value=\"{value}\"/>")), "{junit}");
+    }
+    // Two reports in one file would be one.
+    let both = run(folder.path(), &["cube.obj", "--json", "v.all", "--html", "v.all"]);
+    assert!(both.status.code() == Some(2) && text(&both.stderr).contains("--html would overwrite the JSON report"));
+}

@@ -61,10 +61,16 @@ fn what_is_refused_in_a_folder_stops_nothing_and_fails_unless_allowed() {
 fn what_is_named_and_refused_ends_the_run_before_it_begins() {
     let folder = folder(&["cube"]);
     fs::write(folder.path().join("bad.obj"), "v 0 0 0\nf 1 2 3\n").expect("it is written");
+    fs::write(folder.path().join("bad.txt"), "no mesh").expect("it is written");
     fs::create_dir(folder.path().join("empty")).expect("it is made");
     for (words, message) in [
         (["cube.obj", "bad.obj"], "bad.obj:2: "),
         (["cube.obj", "none.obj"], "none.obj: no such file"),
+        (["cube.obj", "none/"], "none/: no such folder; check the path"),
+        (["cube.obj", "none"], "none: no such file or folder; check the path"),
+        (["cube.obj", "none/*.obj"], "none/*.obj: the folder none does not exist; check the path"),
+        (["cube.obj", "cube.obj/*.obj"], "cube.obj/*.obj: cube.obj is a file, not a folder; check the path"),
+        (["cube.obj", "ba*.txt"], "ba*.txt: 1 file matches, but none is a mesh (.obj,"),
         (["cube.obj", "empty"], "empty: the folder has no mesh (.obj, .usd, .usda, .usdc, .usdz)"),
         (["cube.obj", "*.usd"], "*.usd: no mesh matches (.obj, .usd, .usda, .usdc, .usdz)"),
         (["cube.obj", "[.obj"], "[.obj: "),

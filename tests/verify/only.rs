@@ -91,7 +91,7 @@ fn the_command_shows_a_point_and_refuses_what_is_none() {
         (vec!["cube.obj", "--only", "0,0,1.5"], "u and v in 0 to 1"),
         (vec!["cube.obj", "--only", "0,nan,0"], "u and v in 0 to 1"),
         (vec!["cube.obj", "hole.obj", "--only", "0,0,0"], "--only takes one mesh, not 2"),
-        (vec!["cube.obj", "--only", "0,0,0", "--junit", "v.xml"], "cannot be used with"),
+        (vec!["cube.obj", "--only", "0,0,0", "--junit", "v.xml"], "--only does not go with --junit"),
     ] {
         let output = run(folder.path(), &words);
         let stderr = text(&output.stderr);

@@ -6,14 +6,15 @@ mod family;
 use super::account::Account;
 use super::args::size;
 use super::field::FieldArgs;
+use super::outgoing::STDOUT;
 use super::rig::{RigArgs, is_orthographic, positive};
 use super::scene::{SceneArgs, say_orientation, say_without_area};
 use super::settings::{CommandLine, mesh_digest, method_name};
-use super::{Failure, progress, refined, write_out};
+use super::{Failure, outgoing, progress, refined};
 use crate::curves::{self, Curve};
 use crate::field::{Camera, Projection, Scout};
 use crate::line::count;
-use crate::output::{Lines, LinesFormat, MM_PER_PIXEL, check_writable, write_whole};
+use crate::output::{Lines, LinesFormat, MM_PER_PIXEL};
 use crate::rig::{CameraRig, Rig};
 use clap::{Args, ValueEnum};
 use family::FamilyArgs;
@@ -33,6 +34,9 @@ pub(super) struct LinesArgs {
     /// File to write: .svg (the picture), .dxf, .obj, .usda or .json (in space) [default: JSON on standard output]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
+    /// Format of the file, whatever its name; needed for another one than JSON on standard output
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    output_format: Option<Extension>,
     /// Width and height of the picture in pixels [default: 1024x1024]
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<[u32; 2]>,
@@ -78,7 +82,7 @@ enum Unit {
 }
 
 /// What is written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Extension {
     Json,
     Svg,
@@ -97,11 +101,8 @@ impl Extension {
             ("usda", Extension::Usda),
         ];
         let is = |name: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(name));
-        names.into_iter().find(|(name, _)| is(name)).map(|(_, extension)| extension).ok_or_else(|| {
-            let what =
-                "not a file of curves that we write; choose a name that ends in .svg, .dxf, .obj, .usda or .json";
-            Failure::Bad(format!("{}: {what}", path.display()))
-        })
+        let found = names.into_iter().find(|(name, _)| is(name)).map(|(_, extension)| extension);
+        found.ok_or_else(|| outgoing::unknown_ending(path, "a file of curves", ".svg, .dxf, .obj, .usda or .json"))
     }
 }
 
@@ -142,13 +143,13 @@ impl PaperArgs {
 
 pub(super) fn run(args: &LinesArgs) -> Result<(), Failure> {
     let mut account = Account::default();
-    let extension = args.output.as_deref().map_or(Ok(Extension::Json), Extension::of)?;
+    let extension = args.extension()?;
     args.rig.check()?;
     let rig = args.rig()?;
     args.paper.check(extension, is_orthographic(&rig))?;
     args.family.check(&rig.method())?;
     if let Some(path) = &args.output {
-        check_writable(path)?;
+        outgoing::check(path, "-o")?;
     }
     let mut files = args.rig.files(args.mesh.as_deref(), &rig);
     args.output.iter().try_for_each(|path| files.write(path, "-o", "the curves"))?;
@@ -198,14 +199,10 @@ pub(super) fn run(args: &LinesArgs) -> Result<(), Failure> {
     let lines = Lines { curves: &curves, field: &name, camera: &camera, made_by: &made_by, parts: Some(&parts) };
     let format = args.paper.format(extension, &camera);
     account.time("write", || -> Result<(), Failure> {
-        match &args.output {
-            Some(path) => Ok(write_whole(path, |mut out| lines.write(format, &mut out))?),
-            None => {
-                let mut text = Vec::new();
-                lines.write(format, &mut text)?;
-                write_out(None, &text)
-            }
-        }
+        let path = args.output.as_deref().unwrap_or(Path::new(STDOUT));
+        outgoing::write(path, |mut out| lines.write(format, &mut out))?;
+        outgoing::note(path, &format!("{} curves", curves.len()));
+        Ok(())
     })?;
     args.rig.save(&fitted, rig.pattern)?;
     bar.finish_and_clear();
@@ -235,6 +232,15 @@ fn say(curves: &[Curve], tolerance: f64) {
 }
 
 impl LinesArgs {
+    /// What is written: as the flag says, or else the name of the file.
+    fn extension(&self) -> Result<Extension, Failure> {
+        match (self.output_format, &self.output) {
+            (Some(format), _) => Ok(format),
+            (None, Some(path)) if !outgoing::is_stdout(path) => Extension::of(path),
+            (None, _) => Ok(Extension::Json),
+        }
+    }
+
     /// What is said of field, camera and light.
     fn rig(&self) -> Result<Rig, Failure> {
         let camera = CameraRig { size: self.size, ..CameraRig::default() };

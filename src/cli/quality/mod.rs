@@ -10,11 +10,10 @@ use super::field::{ColourArgs, FieldArgs, PatternArgs};
 use super::rig::RigArgs;
 use super::scene::SceneArgs;
 use super::settings::{CommandLine, mesh_digest};
-use super::{Failure, progress, refined, write_out};
+use super::{Failure, outgoing, progress, refined, write_out};
 use crate::field::{Field, Pattern, Scout};
 use crate::gpu::View;
 use crate::mesh::{Orientation, PtexParts, SubdivMesh};
-use crate::output::check_writable;
 use crate::quality::{FeatureKind, Kind, Limits, Quality, Ranked, Reading};
 use crate::rig::{CameraRig, FittedRig, PatternName, PatternRig, Rig};
 use clap::{Args, ValueEnum};
@@ -262,14 +261,13 @@ impl QualityArgs {
     /// Refuses files that could not be written, before the work.
     fn check_files(&self, rig: &Rig) -> Result<(), Failure> {
         let is_png = |path: &PathBuf| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("png"));
-        if let Some(path) = self.output.as_ref().filter(|path| !is_png(path)) {
-            let what = "not a picture that we write; choose a name that ends in .png";
-            return Err(Failure::Bad(format!("{}: {what}", path.display())));
+        if let Some(path) = self.output.as_ref().filter(|path| !is_png(path) && !outgoing::is_stdout(path)) {
+            return Err(outgoing::unknown_ending(path, "a picture", ".png"));
         }
         let mut files = self.rig.files(self.mesh.as_deref(), rig);
         for (path, flag, what) in [(&self.output, "-o", "the picture"), (&self.json, "--json", "the measurements")] {
             if let Some(path) = path {
-                check_writable(path)?;
+                outgoing::check(path, flag)?;
                 files.write(path, flag, what)?;
             }
         }

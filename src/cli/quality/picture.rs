@@ -3,11 +3,12 @@
 use super::Verdict;
 use crate::cli::Failure;
 use crate::cli::account::Account;
+use crate::cli::outgoing;
 use crate::cli::render::legend as field_legend;
 use crate::curves::{Curve, Look, Place};
 use crate::field::Pattern;
 use crate::gpu::{Gpu, TableLayout, View};
-use crate::output::{Canvas, Drawn, Mark, Panel, Pen, Scale, draw_legend, in_picture, sheet, write_png};
+use crate::output::{Canvas, Drawn, Mark, Panel, Pen, Scale, draw_legend, encode_png, in_picture, sheet};
 use crate::quality::{Piece, Ranked, Subject};
 use crate::stam::LimitSurface;
 use crate::statistics::exact;
@@ -68,7 +69,9 @@ impl Picture<'_> {
             legend: Some((severities(verdict), legend(verdict))),
         };
         let (size, pixels) = sheet(size, &[panel]);
-        Ok(account.time("write", || write_png(path, size, &pixels, &verdict.made_by))?)
+        account.time("write", || outgoing::write(path, |out| encode_png(out, size, &pixels, &verdict.made_by)))?;
+        outgoing::note(path, &format!("{}x{} pixels", size[0], size[1]));
+        Ok(())
     }
 
     fn shown<'a>(&self, verdict: &'a Verdict<'_>) -> Vec<Shown<'a>> {

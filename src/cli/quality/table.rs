@@ -1,11 +1,11 @@
 //! The verdict as text: a summary, and a list in columns.
 
 use super::Verdict;
+use crate::line::count;
 use crate::quality::{
     Break, Chain, Extremes, Feature, FeatureKind, Kind, Line, LineBreak, Nearby, Ranked, Spot, Subject, Unjudged,
     Unwelded, Vertex,
 };
-use crate::line::count;
 use crate::statistics::{exact, short};
 use glam::DVec3;
 use std::fmt::Write;

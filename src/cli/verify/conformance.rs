@@ -1,9 +1,8 @@
 //! `verify --samples-out` and `--results`: the conformance test of other programs.
 
-use super::super::{Failure, args::VerifyArgs, rows::shortest, write_out};
+use super::super::{Failure, args::VerifyArgs, outgoing, rows::shortest, write_out};
 use super::{answers, inputs::Input, write_files};
 use crate::mesh::Scheme;
-use crate::output::write_whole;
 use crate::stam::LimitSurface;
 use crate::verify::conformance::{DEFAULT_PER_FACE, Terms, Tolerances, conformance, sample_set};
 use crate::verify::{MeshReport, Report, Sample};
@@ -84,17 +83,21 @@ pub(super) fn run(args: &VerifyArgs, inputs: &[Input]) -> Result<(), Failure> {
     report.set_source(input.source().as_deref(), "catoptric verify");
     write_out(None, text(path, &report).as_bytes())?;
     let report = Report::new(args.size, vec![report], Vec::new());
-    write_files(args, &report, None, &[])?;
+    write_files(args, &report, &[])?;
     write_out(None, format!("{}\n", report.verdict()).as_bytes())?;
     if report.pass { Ok(()) } else { Err(Failure::Check) }
 }
 
 fn write_samples(path: &Path, surface: &LimitSurface, per_face: usize) -> Result<(), Failure> {
-    Ok(write_whole(path, |out| {
+    let mut count = 0;
+    outgoing::write(path, |out| {
         writeln!(out, "face,u,v")?;
         sample_set(surface, per_face)
+            .inspect(|_| count += 1)
             .try_for_each(|Sample { face, u, v }| writeln!(out, "{face},{},{}", shortest(u), shortest(v)))
-    })?)
+    })?;
+    outgoing::note(path, &format!("{count} samples"));
+    Ok(())
 }
 
 fn text(path: &Path, report: &MeshReport) -> String {

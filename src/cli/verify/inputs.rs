@@ -1,9 +1,10 @@
 //! Which meshes to verify: files, folders and patterns.
 
 use super::super::{Failure, scene::SceneArgs};
+use crate::absent::no_folder;
 use crate::mesh::{self, MeshFormat, SubdivMesh};
 use std::collections::HashSet;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 /// A mesh to verify.
 #[derive(Debug)]
@@ -73,9 +74,7 @@ pub(super) fn find(words: &[PathBuf], scene: &SceneArgs) -> Result<Vec<Input>, F
             None => vec![Input::named(Some(word), scene)?],
         };
         if found.is_empty() {
-            let what = if word.is_dir() { "the folder has no mesh" } else { "no mesh matches" };
-            let extensions = mesh::EXTENSIONS.map(|extension| format!(".{extension}")).join(", ");
-            return Err(Failure::Bad(format!("{}: {what} ({extensions}); check the path", word.display())));
+            return Err(Failure::Bad(format!("{}: {}; check the path", word.display(), no_mesh(word))));
         }
         inputs.extend(found.into_iter().map(|input| Input { scene: scene.clone(), ..input }));
     }
@@ -87,6 +86,24 @@ pub(super) fn find(words: &[PathBuf], scene: &SceneArgs) -> Result<Vec<Input>, F
 /// A word with wildcards that is not the name of a file.
 fn pattern(word: &Path) -> Option<&str> {
     word.to_str().filter(|text| text.contains(['*', '?', '[']) && !word.exists())
+}
+
+/// Why there is no mesh in a folder, or none that matches a pattern.
+fn no_mesh(word: &Path) -> String {
+    let extensions = mesh::EXTENSIONS.map(|extension| format!(".{extension}")).join(", ");
+    if word.is_dir() {
+        return format!("the folder has no mesh ({extensions})");
+    }
+    // The folders before the first wildcard are meant as they stand.
+    let is_plain = |part: &Component<'_>| !part.as_os_str().to_string_lossy().contains(['*', '?', '[']);
+    let folder: PathBuf = word.components().take_while(is_plain).collect();
+    let others = word.to_str().and_then(|text| glob::glob(text).ok()).map_or(0, Iterator::count);
+    match (no_folder(Some(&folder)), others) {
+        (Some(problem), _) => problem,
+        (None, 0) => format!("no mesh matches ({extensions})"),
+        (None, 1) => format!("1 file matches, but none is a mesh ({extensions})"),
+        (None, others) => format!("{others} files match, but none is a mesh ({extensions})"),
+    }
 }
 
 fn matches(word: &Path, pattern: &str) -> Result<Vec<Input>, Failure> {

@@ -6,12 +6,13 @@ mod inputs;
 mod many;
 
 use super::args::VerifyArgs;
+use super::files::Files;
 use super::rows::check_place;
-use super::{Failure, write_out};
+use super::{Failure, outgoing, write_out};
+use crate::absent::problem;
 use crate::gpu::Gpu;
 use crate::mesh::Scheme;
 use crate::osd::Location;
-use crate::output::check_writable;
 use crate::page::{Pictures, page};
 use crate::verify::{Baseline, MeshReport, Process, Refused, Report, Sample, Settings, only};
 pub use answers::parse_answers;
@@ -23,8 +24,17 @@ use std::time::Instant;
 
 pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
     let start = Instant::now();
-    for path in [&args.json, &args.junit, &args.html, &args.conformance.samples_out].into_iter().flatten() {
-        check_writable(path)?;
+    let mut files = Files::default();
+    for (path, flag, what) in [
+        (&args.json, "--json", "the JSON report"),
+        (&args.junit, "--junit", "the JUnit report"),
+        (&args.html, "--html", "the HTML report"),
+        (&args.conformance.samples_out, "--samples-out", "the samples"),
+    ] {
+        if let Some(path) = path {
+            outgoing::check(path, flag)?;
+            files.write(path, flag, what)?;
+        }
     }
     let baseline = args.baseline.as_deref().map(|path| read_baseline(path, args.size)).transpose()?;
     let inputs = inputs::find(&args.meshes, &args.scene)?;
@@ -57,14 +67,14 @@ pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
         }
         Ok(())
     })?;
-    let mut report = Report::new(args.size, meshes, refused);
+    let mut report = Report::new(args.size, meshes, refused).with_adapter(gpu.adapter());
     if args.allow_refused {
         report = report.allow_refused();
     }
     if let Some((path, baseline)) = args.baseline.as_ref().zip(baseline) {
         report = report.with_baseline(path.display().to_string(), &baseline);
     }
-    write_files(args, &report, Some(gpu.adapter()), &pictures)?;
+    write_files(args, &report, &pictures)?;
     if let Some(comparison) = &report.baseline {
         write_out(None, comparison.to_string().as_bytes())?;
     }
@@ -73,12 +83,7 @@ pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
 }
 
 /// Writes the report as the files that were asked for.
-fn write_files(
-    args: &VerifyArgs,
-    report: &Report,
-    adapter: Option<&str>,
-    pictures: &[Pictures],
-) -> Result<(), Failure> {
+fn write_files(args: &VerifyArgs, report: &Report, pictures: &[Pictures]) -> Result<(), Failure> {
     if let Some(path) = &args.json {
         write_json(path, report)?;
     }
@@ -87,8 +92,7 @@ fn write_files(
         write_out(Some(path), text.as_bytes())?;
     }
     if let Some(path) = &args.html {
-        let text =
-            page(report, adapter, pictures).map_err(|error| Failure::Bad(format!("{}: {error}", path.display())))?;
+        let text = page(report, pictures).map_err(|error| Failure::Bad(format!("{}: {error}", path.display())))?;
         write_out(Some(path), text.as_bytes())?;
     }
     Ok(())
@@ -114,7 +118,9 @@ pub(super) fn work() -> Result<(), Failure> {
 
 fn read_baseline(path: &Path, size: [u32; 2]) -> Result<Baseline, Failure> {
     let bad = |what: String| Failure::Bad(format!("{}: {what}", path.display()));
-    let json = std::fs::read(path).map_err(|error| bad(format!("cannot be read ({error}); give an earlier report")))?;
+    let json = std::fs::read(path).map_err(|error| {
+        bad(format!("cannot be read: {}; give an earlier report of verify --json", problem(path, &error)))
+    })?;
     Baseline::read(&json, size).map_err(|error| bad(error.to_string()))
 }
 
@@ -127,7 +133,11 @@ fn one(args: &VerifyArgs, inputs: &[Input], (face, u, v): Location) -> Result<()
     check_place((face, u, v), mesh.ptex_count(), mesh.scheme == Scheme::Loop)
         .map_err(|what| Failure::of_input(input, format!("--only: {what}")))?;
     // Without an adapter the shader is left out: what f64 and OpenSubdiv say does not need it.
-    let gpu = Gpu::new().ok();
+    let gpu = match Gpu::new() {
+        Ok(gpu) => Some(gpu),
+        Err(error) if error.is_no_adapter() => None,
+        Err(error) => return Err(error.into()),
+    };
     let shown = only(&mesh, gpu.as_ref(), Sample { face, u, v }, &settings(args)?)
         .map_err(|error| Failure::of_input(input, error.to_string()))?;
     if let Some(path) = &args.json {

@@ -1,5 +1,6 @@
 //! A gray picture in the light plane, as a smooth function.
 
+use crate::absent::problem;
 use glam::DVec2;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -65,8 +66,10 @@ impl Grid {
     pub fn read(&mut self) -> Result<(), String> {
         let path = self.path.clone();
         let bad = |what: String| format!("{}: {what}; give a gray PNG file", path.display());
-        let reader = image::ImageReader::open(&path).map_err(|e| bad(format!("cannot read the grid ({e})")))?;
-        let reader = reader.with_guessed_format().map_err(|e| bad(format!("cannot read the grid ({e})")))?;
+        let reader = image::ImageReader::open(&path)
+            .map_err(|e| bad(format!("cannot read the grid: {}", problem(&path, &e))))?;
+        let reader =
+            reader.with_guessed_format().map_err(|e| bad(format!("cannot read the grid: {}", problem(&path, &e))))?;
         let picture = reader.decode().map_err(|e| bad(format!("not a picture we read ({e})")))?.to_luma16();
         let size = [picture.width(), picture.height()];
         if size.iter().any(|n| !(LEAST..=MOST).contains(n)) {

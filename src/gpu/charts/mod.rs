@@ -44,6 +44,7 @@ use super::View;
 use super::records::{ChartRecord, LensRecord, SpeckRecord};
 use super::tables::Tables;
 use super::view::Tile;
+use super::watch::Watch;
 use cover::Cover;
 use divide::{Divider, Harvest};
 use lens::Lens;
@@ -88,8 +89,8 @@ impl<'a> Cutter<'a> {
     }
 
     /// The charts that come first.
-    pub fn first(&self) -> Charts {
-        self.cut(None, |patch| self.in_front.as_ref().is_none_or(|in_front| in_front[patch]))
+    pub fn first(&self, watch: Watch<'_>) -> Charts {
+        self.cut(None, watch, |patch| self.in_front.as_ref().is_none_or(|in_front| in_front[patch]))
     }
 
     /// Whether that leaves patches over.
@@ -98,16 +99,17 @@ impl<'a> Cutter<'a> {
     }
 
     /// The other charts, but for what is hidden by those that the depth buffer shows.
-    pub fn rest(&self, depths: &[f32]) -> Charts {
+    pub fn rest(&self, depths: &[f32], watch: Watch<'_>) -> Charts {
         let cover = Cover::new(&self.lens, depths);
-        self.cut(Some(&cover), |patch| self.in_front.as_ref().is_some_and(|in_front| !in_front[patch]))
+        self.cut(Some(&cover), watch, |patch| self.in_front.as_ref().is_some_and(|in_front| !in_front[patch]))
     }
 
-    fn cut(&self, cover: Option<&Cover>, is_meant: impl Fn(usize) -> bool + Sync) -> Charts {
+    fn cut(&self, cover: Option<&Cover>, watch: Watch<'_>, is_meant: impl Fn(usize) -> bool + Sync) -> Charts {
         /// Patches a job.
         const JOB: usize = 64;
         let Cutter { tables, lens, level, .. } = self;
         let count = if divide::sees_box(lens, tables.bounds()) { tables.patches() } else { 0 };
+        let done_one = watch.count(count.div_ceil(JOB));
         let harvests: Vec<Harvest> = (0..count.div_ceil(JOB))
             .into_par_iter()
             .map(|job| {
@@ -115,6 +117,7 @@ impl<'a> Cutter<'a> {
                 for patch in (job * JOB..((job + 1) * JOB).min(count)).filter(|&patch| is_meant(patch)) {
                     divider.patch(patch as u32, tables.cells[patch].0, tables.source.nets(patch));
                 }
+                done_one();
                 divider.out
             })
             .collect();
