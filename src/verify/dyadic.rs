@@ -3,7 +3,7 @@
 use super::bin::Bins;
 use super::difference::{Check, Normal, Sample};
 use super::key::{Against, Key, TierName};
-use super::references::{References, thinned};
+use super::references::References;
 use super::{Subject, VerifyError};
 use crate::osd::{Answer, Location, MAX_ISOLATION, ReferenceJet};
 use crate::patch::PatchKind;
@@ -65,9 +65,10 @@ pub(super) fn run(subject: &Subject<'_>, references: &References, bins: &mut Bin
     let answers = references.far.evaluate(&samples)?;
     let is_known_wrong = |sample: &Location| not_manifold.contains(&(sample.0, [sample.1, sample.2].map(f64::to_bits)));
     compare(subject, Against::Far, &samples, &subject.evaluate_all(&samples), &answers, is_known_wrong, bins);
-    let samples = thinned(&samples);
-    let answers = references.stencils.evaluate(&samples)?;
-    compare(subject, Against::LimitStencils, &samples, &subject.evaluate_all(&samples), &answers, is_known_wrong, bins);
+    let asked = references.for_stencils(&samples);
+    bins.too_slow += asked.left_out;
+    let (samples, answers) = (&asked.samples, references.stencils(&asked)?);
+    compare(subject, Against::LimitStencils, samples, &subject.evaluate_all(samples), &answers, is_known_wrong, bins);
     Ok(())
 }
 

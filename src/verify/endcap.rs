@@ -3,6 +3,7 @@
 use super::bin::Bins;
 use super::difference::{Check, Difference, Normal, Sample};
 use super::key::{Against, Key, TierName};
+use super::references::References;
 use super::regular::scattered;
 use super::{NORMAL_LIMIT, Subject, VerifyError, rounding};
 use crate::osd::{Answer, Bfr, Reference};
@@ -10,8 +11,10 @@ use crate::osd::{Answer, Bfr, Reference};
 const PER_FACE: usize = 64;
 const BUDGET: usize = 400_000;
 
-pub(super) fn run(subject: &Subject<'_>, bins: &mut Bins) -> Result<(), VerifyError> {
-    let samples = scattered(subject, PER_FACE, BUDGET);
+pub(super) fn run(subject: &Subject<'_>, references: &References, bins: &mut Bins) -> Result<(), VerifyError> {
+    let scattered = scattered(subject, PER_FACE, BUDGET);
+    let samples = references.expense.for_bfr(&scattered);
+    bins.too_slow += scattered.len() - samples.len();
     let answers = Bfr::new(subject.mesh, Bfr::DEFAULT_LEVELS)?.evaluate(&samples)?;
     bins.not_asked += answers.iter().filter(|a| a.answer == Answer::NotAsked).count();
     bins.fill(samples.len(), |bins, i| {

@@ -11,6 +11,7 @@ pub mod conformance;
 mod difference;
 mod dyadic;
 mod endcap;
+mod expense;
 mod failures;
 mod fragment;
 mod histogram;
@@ -217,7 +218,7 @@ fn tiers(subject: &Subject<'_>, gpu: &Gpu, size: [u32; 2], clock: &mut Clock) ->
     clock.time("dyadic", || dyadic::run(subject, &references, &mut bins))?;
     clock.time("regular", || regular::run(subject, &references, &mut bins))?;
     fragment::run(subject, &references.far, gpu, size, clock, &mut bins)?;
-    clock.time("endcap", || endcap::run(subject, &mut bins))?;
+    clock.time("endcap", || endcap::run(subject, &references, &mut bins))?;
     Ok(bins)
 }
 

@@ -4,7 +4,7 @@
 use super::bin::Bins;
 use super::difference::Sample;
 use super::key::{Against, Key, TierName};
-use super::references::{References, thinned};
+use super::references::References;
 use super::{Subject, VerifyError};
 use crate::osd::{Answer, Bfr, Location, Reference, ReferenceJet};
 use crate::stam::Jet;
@@ -47,19 +47,23 @@ fn inside(subject: &Subject<'_>, patches: &[usize], each: u32) -> Vec<Location> 
 }
 
 pub(super) fn run(subject: &Subject<'_>, references: &References, bins: &mut Bins) -> Result<(), VerifyError> {
-    let samples = scattered(subject, PER_FACE, BUDGET);
+    let scattered = scattered(subject, PER_FACE, BUDGET);
+    let samples = references.expense.for_bfr(&scattered);
+    bins.too_slow += scattered.len() - samples.len();
     // Bfr, which has one thread, answers while limit stencils are made.
     let ask_bfr = || Bfr::new(subject.mesh, Bfr::DEFAULT_LEVELS)?.evaluate(&samples);
     // A small patch may have been missed: none is, whatever the size of the mesh.
     let every: Vec<usize> = (0..subject.surface.patches().len()).collect();
-    let mut all = [&*samples, &inside(subject, &every, PER_PATCH)].concat();
+    let mut all = [&*scattered, &inside(subject, &every, PER_PATCH)].concat();
     all.sort_by_key(|sample| sample.0);
-    let kept = thinned(&all);
-    let (bfr, stencils) = rayon::join(ask_bfr, || references.stencils.evaluate(&kept));
+    let asked = references.for_stencils(&all);
+    bins.too_slow += asked.left_out;
+    let (bfr, stencils) = rayon::join(ask_bfr, || references.stencils(&asked));
     let answers = bfr?;
     bins.not_asked += answers.iter().filter(|a| a.answer == Answer::NotAsked).count();
     compare(subject, Against::Bfr, &samples, &subject.evaluate_all(&samples), &answers, bins);
-    compare(subject, Against::LimitStencils, &kept, &subject.evaluate_all(&kept), &stencils?, bins);
+    let kept = &asked.samples;
+    compare(subject, Against::LimitStencils, kept, &subject.evaluate_all(kept), &stencils?, bins);
 
     let mut judged = vec![false; every.len()];
     ask_far(subject, references, &all, &mut judged, bins)?;

@@ -100,6 +100,9 @@ pub struct MeshReport {
     /// Samples of the tiers `regular` and `endcap` that Bfr was not asked: 3.5.0 reads out of bounds at interior vertices
     /// of valence 2.
     pub reference_not_asked: usize,
+    /// Samples at vertices of many faces that limit stencils and Bfr were not asked, because they take time with the cube and the
+    /// square of the number of faces there.
+    pub reference_too_slow: usize,
     /// Patches that no sample inside judged in tier `regular`: OpenSubdiv has an end cap all over them, so they are compared
     /// at dyadic points alone.
     pub patches_unjudged: usize,
@@ -224,7 +227,8 @@ impl MeshReport {
         for patch in surface.patches() {
             *patches.entry(patch.kind.name()).or_default() += 1;
         }
-        let (reference_not_asked, patches_unjudged) = (bins.not_asked, bins.unjudged);
+        let (reference_not_asked, reference_too_slow) = (bins.not_asked, bins.too_slow);
+        let patches_unjudged = bins.unjudged;
         let control_faces = control_faces(mesh);
         let parts = mesh.ptex_parts();
         let failures = |failed: &FailedPatches| Failures::new(failed, surface, &control_faces, &parts);
@@ -245,6 +249,7 @@ impl MeshReport {
             faces: mesh.face_count(),
             patches,
             reference_not_asked,
+            reference_too_slow,
             patches_unjudged,
             pass: tiers.iter().chain(reference_known_wrong.iter().map(|known| &known.row)).all(|row| row.pass),
             failures: failures(&all_failed),

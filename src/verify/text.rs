@@ -81,6 +81,14 @@ impl MeshReport {
                 "  Bfr: {count} samples not asked: it reads out of bounds where two faces share two edges at a vertex"
             )?;
         }
+        if self.reference_too_slow > 0 {
+            let count = self.reference_too_slow;
+            writeln!(
+                f,
+                "  limit stencils, Bfr: {count} samples at vertices of many faces not asked: they take time with the cube and the \
+                 square of the valence"
+            )?;
+        }
         if self.patches_unjudged > 0 {
             let count = counted(self.patches_unjudged, "patch is", "patches are");
             writeln!(f, "  {count} judged at dyadic points alone: OpenSubdiv has an end cap all over")?;
