@@ -408,7 +408,8 @@ mod tests {
                         assert_eq!(window.level as usize, level);
                         let net: [DVec3; 16] =
                             surface.pole_window::<WINDOW_POINTS, 16>(patch, level, |k| window.point(k));
-                        assert_eq!(net, std::array::from_fn(|k| levels[level - 1][window.point(k)]), "level {level}");
+                        let expected: [DVec3; 16] = std::array::from_fn(|k| levels[level - 1][window.point(k)]);
+                        assert_eq!(net, expected, "level {level}");
                     }
                 }
             }
