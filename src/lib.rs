@@ -55,3 +55,6 @@ pub mod rig;
 pub mod stam;
 pub mod statistics;
 pub mod verify;
+
+#[cfg(test)]
+mod test_meshes;

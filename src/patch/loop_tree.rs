@@ -4,11 +4,11 @@
 //! boundary or an infinitely sharp edge, or 1 at a corner), or one extraordinary vertex whose spokes are the only
 //! features of the other two. After one level the corners that are new are regular, so there is at most one.
 
-use super::fan::Fan;
+use super::fan::{Fan, LargeFans};
 use super::lattice::{NEIGHBOURS, NET};
 use super::piece::Piece;
 use super::tree::{PHANTOM, kind_of};
-use super::{MAX_VALENCE, Node, Patch, PatchError, PatchKind, Patches, RingClass, Shape, Support, SupportKind};
+use super::{Node, Patch, PatchError, PatchKind, Patches, RingClass, Shape, Support, SupportKind, Wedge};
 use crate::osd::{Level, Refiner, Rule};
 use std::collections::HashMap;
 
@@ -30,6 +30,9 @@ struct Walk {
     places: Vec<(usize, usize)>,
     class_indices: HashMap<RingClass, u32>,
     fans: [Fan; 3],
+    large: LargeFans,
+    /// Numbers of the lists of large fans among those of `out`, by their numbers in `large`.
+    rings: HashMap<u32, u32>,
     out: Patches,
 }
 
@@ -70,6 +73,8 @@ pub(super) fn build(refiner: &Refiner, piece: &Piece<'_>) -> Result<Patches, Pat
         places: Vec::new(),
         class_indices: HashMap::new(),
         fans: Default::default(),
+        large: LargeFans::default(),
+        rings: HashMap::new(),
         out: Patches { triangles: true, ..Patches::default() },
         levels,
     };
@@ -97,9 +102,6 @@ impl Walk {
             return Ok(Node::Hole);
         }
         let leaf = self.leaf(level, face, cell);
-        if let Some(fan) = self.fans.iter().find(|fan| fan.faces() > MAX_VALENCE) {
-            return Err(PatchError::Valence(fan.faces()));
-        }
         if let Some(patch) = leaf {
             self.states[level][face] = State::Leaf;
             self.places.push((level, face));
@@ -149,7 +151,7 @@ impl Walk {
             return None;
         }
         for (corner, fan) in self.fans.iter_mut().enumerate() {
-            fan.gather(topology, face, corner);
+            fan.gather(&self.levels, level, face, corner, &mut self.large);
         }
         let irregular: Vec<usize> = (0..3).filter(|&i| !is_regular(&self.fans[i])).collect();
         let (kind, rotation) = match irregular[..] {
@@ -213,15 +215,22 @@ impl Walk {
         }
         let fan = &self.fans[rotation];
         let class = RingClass { triangles: true, ..RingClass::new(fan) };
-        self.out.vertices.push(global(fan.vertex));
-        self.out.vertices.extend(fan.spokes.iter().map(|&v| global(v)));
-        self.out.vertices.extend(class.outer().into_iter().map(|(i, j)| net[slot([i, j])]));
-        let next = self.class_indices.len() as u32;
-        let index = *self.class_indices.entry(class).or_insert(next);
-        if index == next {
-            self.out.classes.push(class);
+        let outer = class.outer().into_iter().map(|(i, j)| net[slot([i, j])]);
+        let ring = [fan.vertex].into_iter().chain(fan.spokes().iter().copied());
+        let Some(number) = fan.large() else {
+            self.out.vertices.extend(ring.map(global).chain(outer));
+            return Support { first, kind: SupportKind::Class(self.out.class_index(&mut self.class_indices, class)) };
+        };
+        let next = self.out.rings.len() as u32;
+        let list = *self.rings.entry(number).or_insert(next);
+        if list == next {
+            self.out.push_ring(ring.map(global));
         }
-        Support { first, kind: SupportKind::Class(index) }
+        let first = self.out.vertices.len() as u32;
+        self.out.vertices.extend(outer);
+        let class_index = self.out.class_index(&mut self.class_indices, class.of_all_faces());
+        let wedge = Wedge { class: class_index, ring: list, face: class.index };
+        self.out.push_wedge(first, wedge)
     }
 
     fn mark_transitions(&mut self) {

@@ -25,8 +25,12 @@ pub use refine::{Refinement, Watch};
 pub use tree::PHANTOM;
 pub(crate) use tree::slot;
 
-/// Most faces round an extraordinary vertex.
-pub const MAX_VALENCE: usize = 1024;
+use std::borrow::Cow;
+use std::collections::HashMap;
+
+/// Faces round a vertex beyond which they share what they have in common, and nothing is tabulated by class: a class for each
+/// face, with the points of all, would take memory and time with the square of their number.
+pub const LARGE_FAN: usize = 16;
 
 /// Why the patches of a mesh were not found.
 #[derive(Debug, thiserror::Error)]
@@ -42,9 +46,6 @@ pub enum PatchError {
         /// Face index in the level.
         face: usize,
     },
-    /// The classes of one vertex take memory with the square of its valence (300 MB at the limit).
-    #[error("a face of {0} corners or a vertex of valence {0}; at most {MAX_VALENCE} are supported: split it")]
-    Valence(usize),
     /// The process may not take so much memory.
     #[error("to be refined {0}")]
     Memory(#[from] crate::memory::TooMuch),
@@ -190,7 +191,8 @@ pub enum Tip {
 /// What all irregular patches with the same subdivision matrices share (docs/LIMIT.md, section 2.2).
 ///
 /// The faces round the vertex are counted counter-clockwise; face i lies between spoke i and spoke i+1. A closed ring
-/// starts at the patch itself, an open sector at its first sharp or boundary edge.
+/// starts at the patch itself, an open sector at its first sharp or boundary edge. Of more than [`LARGE_FAN`] faces the class
+/// is that of them all, with the index 0, and [`Patches::wedge`] says which face a patch is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct RingClass {
     /// Faces are triangles under Loop's rules, not quads under those of Catmull and Clark.
@@ -243,6 +245,16 @@ impl RingClass {
         points
     }
 
+    /// The class of a large fan, whichever of its faces this is.
+    fn of_all_faces(self) -> Self {
+        Self { index: 0, ..self }
+    }
+
+    /// Points round the vertex, it included: those that the subdivided ones follow from.
+    pub fn ring(&self) -> usize {
+        self.support() - self.outer().len()
+    }
+
     /// Whether the surface has a tangent plane at the vertex (docs/LIMIT.md, section 5). Not so for rings of two faces,
     /// cones, and where directions inside a sector outgrow those along its edges: creases of five faces and more on a
     /// side, corners of three and more; of triangles, seven and four. The normal there is the limit inside the patch.
@@ -261,6 +273,13 @@ impl RingClass {
     pub fn support(&self) -> usize {
         let opposite = if self.triangles { 0 } else { usize::from(self.faces) };
         1 + self.spokes() + opposite + self.outer().len()
+    }
+}
+
+impl Wedge {
+    /// The class of the patch itself: that of its fan, and which face it is.
+    pub fn class_of_face(&self, classes: &[RingClass]) -> RingClass {
+        RingClass { index: self.face, ..classes[self.class as usize] }
     }
 }
 
@@ -304,6 +323,20 @@ enum SupportKind {
     Strip(u32),
     /// What the class says.
     Class(u32),
+    /// The points outside the ring of a wedge.
+    Wedge(u32),
+}
+
+/// A patch at a vertex of more than [`LARGE_FAN`] faces.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Wedge {
+    /// Index into [`Patches::classes`].
+    pub class: u32,
+    /// Index into [`Patches::rings`]: the vertex, its spokes and the opposite corners of its quads, which all faces of the fan
+    /// share.
+    pub ring: u32,
+    /// Which face of the fan it is.
+    pub face: u16,
 }
 
 /// The patches of a mesh and the quadtrees that find them. Topology only: control points may move without it changing.
@@ -315,6 +348,9 @@ pub struct Patches {
     supports: Vec<Support>,
     vertices: Vec<u32>,
     classes: Vec<RingClass>,
+    /// Where the points of large fans are listed: first and number.
+    rings: Vec<[u32; 2]>,
+    wedges: Vec<Wedge>,
     roots: Vec<Node>,
     splits: Vec<[Node; 4]>,
     strips: Vec<Strips>,
@@ -337,23 +373,84 @@ impl Patches {
     pub fn class(&self, patch: usize) -> Option<usize> {
         match self.supports[patch].kind {
             SupportKind::Class(class) => Some(class as usize),
+            SupportKind::Wedge(wedge) => Some(self.wedges[wedge as usize].class as usize),
             _ => None,
         }
     }
 
+    /// Of a patch at a vertex of more than [`LARGE_FAN`] faces: its number among those, and what it is.
+    pub fn wedge(&self, patch: usize) -> Option<(usize, Wedge)> {
+        match self.supports[patch].kind {
+            SupportKind::Wedge(wedge) => Some((wedge as usize, self.wedges[wedge as usize])),
+            _ => None,
+        }
+    }
+
+    /// Number of patches that are [wedges](Self::wedge).
+    pub fn wedge_count(&self) -> usize {
+        self.wedges.len()
+    }
+
+    /// Refined vertices of a large fan: the vertex, its spokes and the opposite corners of its quads, counter-clockwise.
+    pub fn ring(&self, ring: usize) -> &[u32] {
+        let [first, count] = self.rings[ring].map(|x| x as usize);
+        &self.vertices[first..first + count]
+    }
+
+    /// Number of [rings](Self::ring).
+    pub fn ring_count(&self) -> usize {
+        self.rings.len()
+    }
+
     /// Refined vertices that control a patch: for a regular one the 4x4 net, u fastest, or the 12 points of a box spline
-    /// ([`stam::box_spline`](crate::stam::box_spline)), [`PHANTOM`] beyond sharp edges; else the support of its class.
-    pub fn support(&self, patch: usize) -> &[u32] {
-        let first = self.supports[patch].first as usize;
-        let regular = if self.triangles { lattice::NET.len() } else { 16 };
-        let length = self.class(patch).map_or(regular, |class| self.classes[class].support());
-        &self.vertices[first..first + length]
+    /// ([`stam::box_spline`](crate::stam::box_spline)), [`PHANTOM`] beyond sharp edges; else the support of its class. That of a
+    /// [wedge](Self::wedge) is its ring, from the ring's own beginning, and the points outside it: put together for the call.
+    pub fn support(&self, patch: usize) -> Cow<'_, [u32]> {
+        match self.wedge(patch) {
+            Some((_, wedge)) => [self.ring(wedge.ring as usize), self.own_support(patch)].concat().into(),
+            None => self.own_support(patch).into(),
+        }
+    }
+
+    /// As [`support`](Self::support), of a wedge without its ring.
+    pub(crate) fn own_support(&self, patch: usize) -> &[u32] {
+        let Support { first, kind } = self.supports[patch];
+        let length = match kind {
+            SupportKind::Net | SupportKind::Strip(_) if self.triangles => lattice::NET.len(),
+            SupportKind::Net | SupportKind::Strip(_) => 16,
+            SupportKind::Class(class) => self.classes[class as usize].support(),
+            SupportKind::Wedge(wedge) => self.wedges[wedge as usize].class_of_face(&self.classes).outer().len(),
+        };
+        &self.vertices[first as usize..][..length]
+    }
+
+    /// Index of a class, which is new where `known` does not have it.
+    fn class_index(&mut self, known: &mut HashMap<RingClass, u32>, class: RingClass) -> u32 {
+        let next = known.len() as u32;
+        let index = *known.entry(class).or_insert(next);
+        if index == next {
+            self.classes.push(class);
+        }
+        index
+    }
+
+    fn push_ring(&mut self, vertices: impl Iterator<Item = u32>) {
+        let first = self.vertices.len() as u32;
+        self.vertices.extend(vertices);
+        self.rings.push([first, self.vertices.len() as u32 - first]);
+    }
+
+    fn push_wedge(&mut self, first: u32, wedge: Wedge) -> Support {
+        self.wedges.push(wedge);
+        Support { first, kind: SupportKind::Wedge(self.wedges.len() as u32 - 1) }
     }
 
     /// Bytes of all this.
     pub(crate) fn bytes(&self) -> u64 {
         let Self { patches, supports, vertices, roots, splits, strips, row_weights, ptex_edges, .. } = self;
         let lists = [
+            size_of_val(&self.rings[..]),
+            size_of_val(&self.wedges[..]),
             size_of_val(&patches[..]),
             size_of_val(&supports[..]),
             size_of_val(&vertices[..]),
@@ -371,10 +468,23 @@ impl Patches {
         &self.vertices
     }
 
-    /// Lets another vertex be point `point` of a patch's support, and of those that share it (strips).
+    /// Lets another vertex be point `point` of a patch's support, and of those that share it (strips). A wedge gets a ring of its
+    /// own where the point is one of the ring.
     pub(crate) fn set_support(&mut self, patch: usize, point: usize, vertex: u32) {
-        let first = self.supports[patch].first as usize;
-        self.vertices[first + point] = vertex;
+        let mut first = self.supports[patch].first as usize;
+        let mut place = point;
+        if let Some((number, wedge)) = self.wedge(patch) {
+            let ring = self.ring(wedge.ring as usize).to_vec();
+            match place.checked_sub(ring.len()) {
+                Some(outer) => place = outer,
+                None => {
+                    self.wedges[number].ring = self.rings.len() as u32;
+                    first = self.vertices.len();
+                    self.push_ring(ring.into_iter());
+                }
+            }
+        }
+        self.vertices[first + place] = vertex;
     }
 
     /// How the rows (v = const) of a strip's net follow from the four rows of its support; `None` for other patches.

@@ -162,26 +162,22 @@ impl Patches {
         let [patches, listed, splits, strips, rows] =
             [self.patches.len(), self.vertices.len(), self.splits.len(), self.strips.len(), self.row_weights.len()]
                 .map(|count| count as u32);
-        let known: Vec<u32> = piece
-            .classes
-            .iter()
-            .map(|&class| {
-                let next = classes.len() as u32;
-                let index = *classes.entry(class).or_insert(next);
-                if index == next {
-                    self.classes.push(class);
-                }
-                index
-            })
-            .collect();
+        let [rings, wedges] = [self.rings.len(), self.wedges.len()].map(|count| count as u32);
+        let known: Vec<u32> = piece.classes.iter().map(|&class| self.class_index(classes, class)).collect();
         for support in &mut piece.supports {
             support.first += listed;
             match &mut support.kind {
                 SupportKind::Net => (),
                 SupportKind::Strip(row) => *row += rows,
                 SupportKind::Class(class) => *class = known[*class as usize],
+                SupportKind::Wedge(wedge) => *wedge += wedges,
             }
         }
+        for wedge in &mut piece.wedges {
+            wedge.class = known[wedge.class as usize];
+            wedge.ring += rings;
+        }
+        piece.rings.iter_mut().for_each(|[first, _]| *first += listed);
         let moved = |node: &mut Node| match node {
             Node::Hole => (),
             Node::Leaf(patch) => *patch += patches,
@@ -195,6 +191,8 @@ impl Patches {
         self.patches.append(&mut piece.patches);
         self.supports.append(&mut piece.supports);
         self.vertices.append(&mut piece.vertices);
+        self.rings.append(&mut piece.rings);
+        self.wedges.append(&mut piece.wedges);
         self.roots.append(&mut piece.roots);
         self.splits.append(&mut piece.splits);
         self.strips.append(&mut piece.strips);

@@ -1,12 +1,10 @@
 //! Finds the patches: walks the refined levels and stops at the first face whose limit is known in closed form.
 
 use super::adjacency::PtexEdges;
-use super::fan::Fan;
+use super::fan::{Fan, LargeFans};
 use super::piece::Piece;
 use super::strips;
-use super::{
-    MAX_VALENCE, Node, Patch, PatchError, PatchKind, Patches, RingClass, Shape, Strips, Support, SupportKind, Tip,
-};
+use super::{Node, Patch, PatchError, PatchKind, Patches, RingClass, Shape, Strips, Support, SupportKind, Tip, Wedge};
 use crate::osd::{INFINITE_SHARPNESS, Level, Refiner, Rule};
 use std::collections::HashMap;
 
@@ -34,6 +32,9 @@ struct Walk {
     /// First row weights of a sharpness.
     row_indices: HashMap<u32, u32>,
     fans: [Fan; 4],
+    large: LargeFans,
+    /// Numbers of the lists of large fans among those of `out`, by their numbers in `large`.
+    rings: HashMap<u32, u32>,
     out: Patches,
 }
 
@@ -65,6 +66,8 @@ pub(super) fn build(refiner: &Refiner, piece: &Piece<'_>) -> Result<Patches, Pat
         class_indices: HashMap::new(),
         row_indices: HashMap::new(),
         fans: Default::default(),
+        large: LargeFans::default(),
+        rings: HashMap::new(),
         out: Patches::default(),
         levels,
     };
@@ -131,9 +134,6 @@ impl Walk {
             return Ok(Node::Hole);
         }
         let leaf = self.leaf(level, face, cell);
-        if let Some(fan) = self.fans.iter().find(|fan| fan.faces() > MAX_VALENCE) {
-            return Err(PatchError::Valence(fan.faces()));
-        }
         if let Some(strips) = self.strips(level, face, cell) {
             return Ok(strips);
         }
@@ -161,7 +161,7 @@ impl Walk {
             return None;
         }
         for (corner, fan) in self.fans.iter_mut().enumerate() {
-            fan.gather(topology, face, corner);
+            fan.gather(&self.levels, level, face, corner, &mut self.large);
         }
         let irregular: Vec<usize> = (0..4).filter(|&i| !self.fans[i].is_regular()).collect();
         let (kind, rotation) = match irregular[..] {
@@ -200,7 +200,7 @@ impl Walk {
             return None;
         }
         for (corner, fan) in self.fans.iter_mut().enumerate() {
-            fan.gather(topology, face, corner);
+            fan.gather(&self.levels, level, face, corner, &mut self.large);
         }
         let fan = |corner: usize| &self.fans[(edge + corner) % 4];
         let smooth = |corner: usize| fan(corner).is_regular() && fan(corner).rule == Some(Rule::Smooth);
@@ -261,7 +261,7 @@ impl Walk {
             Some(Rule::Crease) => before.index == 0,
             _ => false,
         };
-        ev.quads && far.rule == Some(Rule::Smooth) && along_first && along_second
+        ev.has_only_quads() && far.rule == Some(Rule::Smooth) && along_first && along_second
     }
 
     fn support(&mut self, level: usize, kind: PatchKind, rotation: usize) -> Support {
@@ -281,16 +281,22 @@ impl Walk {
         }
         let fan = &self.fans[rotation];
         let class = RingClass::new(fan);
-        self.out.vertices.push(global(fan.vertex));
-        self.out.vertices.extend(fan.spokes.iter().map(|&v| global(v)));
-        self.out.vertices.extend(fan.opposites.iter().map(|&v| global(v)));
-        self.out.vertices.extend(class.outer().iter().map(|&(i, j)| grid[slot(i, j)]));
-        let next = self.class_indices.len() as u32;
-        let index = *self.class_indices.entry(class).or_insert(next);
-        if index == next {
-            self.out.classes.push(class);
+        let outer = class.outer().into_iter().map(|(i, j)| grid[slot(i, j)]);
+        let ring = [fan.vertex].into_iter().chain(fan.spokes().iter().copied()).chain(fan.opposites().iter().copied());
+        let Some(number) = fan.large() else {
+            self.out.vertices.extend(ring.map(global).chain(outer));
+            return Support { first, kind: SupportKind::Class(self.out.class_index(&mut self.class_indices, class)) };
+        };
+        let next = self.out.rings.len() as u32;
+        let list = *self.rings.entry(number).or_insert(next);
+        if list == next {
+            self.out.push_ring(ring.map(global));
         }
-        Support { first, kind: SupportKind::Class(index) }
+        let first = self.out.vertices.len() as u32;
+        self.out.vertices.extend(outer);
+        let class_index = self.out.class_index(&mut self.class_indices, class.of_all_faces());
+        let wedge = Wedge { class: class_index, ring: list, face: class.index };
+        self.out.push_wedge(first, wedge)
     }
 
     fn mark_transitions(&mut self) {
@@ -353,7 +359,7 @@ impl RingClass {
             Some(Rule::Corner) => Tip::Corner,
             _ => Tip::Smooth,
         };
-        let dart = fan.closed.then(|| fan.sharpness.iter().position(|&s| s >= INFINITE_SHARPNESS)).flatten();
+        let dart = fan.closed.then(|| fan.sharpness().iter().position(|&s| s >= INFINITE_SHARPNESS)).flatten();
         Self {
             triangles: false,
             faces: fan.faces() as u16,

@@ -22,7 +22,7 @@ use super::product::{Products, ROWS};
 use super::rows::{Row, Rows};
 use super::surface::combine;
 use crate::kept::Kept;
-use crate::patch::RingClass;
+use crate::patch::{LARGE_FAN, RingClass};
 use glam::DVec3;
 use std::sync::{Arc, OnceLock};
 
@@ -34,8 +34,8 @@ pub const LEVELS: usize = 52;
 pub const WINDOW_POINTS: usize = 24;
 
 /// Faces up to which a class keeps its matrices: their memory is 30 kB a face, and a sector of k faces has k classes.
-/// Beyond, levels are computed by stepping.
-const KEPT_FACES: u16 = 16;
+/// Beyond, the levels of all patches at a vertex are computed together ([`pole`](super::pole)).
+const KEPT_FACES: usize = LARGE_FAN;
 
 /// Faces up to which a class is kept for other meshes: a hundred classes, 40 MB when all have come up.
 const SHARED_FACES: u16 = 8;
@@ -67,6 +67,12 @@ pub struct ClassTable {
     columns: OnceLock<Vec<f64>>,
 }
 
+/// Place (a,b) of window point `point` of a level of quads.
+pub(super) fn grid_place(point: usize) -> (isize, isize) {
+    let k = point as isize + 1;
+    (k % 5 - 1, k / 5 - 1)
+}
+
 /// Levels that are computed together.
 const TOGETHER: usize = 24;
 
@@ -78,14 +84,14 @@ impl ClassTable {
             (rows.step(), rows.windows(), loop_modes::modes(class))
         } else {
             let rows = Rows::new(class);
-            let windows = (1..=WINDOW_POINTS as isize).map(|k| rows.refined(k % 5 - 1, k / 5 - 1)).collect();
+            let windows = (0..WINDOW_POINTS).map(grid_place).map(|(a, b)| rows.refined(a, b)).collect();
             (rows.step(), windows, Modes::of(class))
         };
         let limit = left_eigenvector_of_one(&step);
         let Modes { lambda, tangents, spare } = modes;
         let mut table =
             Self { class, lambda, limit, tangents, spare, step, windows, levels: Vec::new(), columns: OnceLock::new() };
-        if class.faces <= KEPT_FACES {
+        if usize::from(class.faces) <= KEPT_FACES {
             table.levels = table.matrices();
         }
         table
@@ -201,6 +207,19 @@ impl ClassTable {
             std::mem::swap(&mut stepped, &mut next);
         }
         stepped
+    }
+
+    /// B / lambda times the points of a ring alone, which follow from no others; and l0 times them.
+    pub(super) fn ring_step(&self, ring: &[DVec3]) -> (DVec3, Vec<DVec3>) {
+        let constant = combine(&self.limit, ring);
+        let over = 1.0 / self.lambda;
+        let rows = &self.step[..ring.len()];
+        (constant, rows.iter().map(|row| (sparse(row, ring) - constant) * over).collect())
+    }
+
+    /// Whether the class keeps its matrices.
+    pub(super) fn keeps_matrices(&self) -> bool {
+        !self.levels.is_empty()
     }
 
     /// Makes `next` B / lambda times points.

@@ -2,9 +2,9 @@
 
 use super::box_spline::{self, POINTS};
 use super::bspline::{tensor, tensor_second};
-use super::class::{ClassTable, LEVELS};
-use super::surface::combine;
-use super::{Jet, Jet2, LimitSurface, LoopWindow, Window};
+use super::class::{ClassTable, LEVELS, WINDOW_POINTS};
+use super::pole::{PoleVertex, Tangents};
+use super::{Jet, Jet2, LOOP_WINDOW, LimitSurface, LoopWindow, Window};
 use crate::patch::Patch;
 use glam::DVec3;
 
@@ -49,12 +49,21 @@ impl Local {
     }
 
     fn irregular_triangle(surface: &LimitSurface, patch: usize, table: &ClassTable, uv: [f64; 2]) -> Self {
-        let (points, origin) = surface.irregular_net(patch, table);
         let window = LoopWindow::at(uv);
         let level = (window.level as usize).min(LEVELS);
-        let net = table.window_points(level, |k| window.point(k), &points);
         let at_vertex = window.at_vertex;
-        let tip = (at_vertex || level > LEVELS / 2).then(|| tip_normal(table, &points)).flatten();
+        let wants_tip = at_vertex || level > LEVELS / 2;
+        let (net, origin, tip) = match surface.pole_vertex(patch) {
+            Some(PoleVertex { limit, tangents }) => {
+                let net = surface.pole_window::<{ LOOP_WINDOW.len() }, _>(patch, level, |k| window.point(k));
+                (net, limit, wants_tip.then(|| tangents.normal()).flatten())
+            }
+            None => {
+                let (points, origin) = surface.irregular_net(patch, table);
+                let net = table.window_points(level, |k| window.point(k), &points);
+                (net, origin, wants_tip.then(|| Tangents::new(table, &points).normal()).flatten())
+            }
+        };
         Self {
             scale: table.lambda.powi(window.level as i32 - 1),
             zoom: window.sign * 2f64.powi(window.level as i32),
@@ -65,12 +74,21 @@ impl Local {
     }
 
     fn irregular(surface: &LimitSurface, patch: usize, table: &ClassTable, uv: [f64; 2]) -> Self {
-        let (points, origin) = surface.irregular_net(patch, table);
         let window = Window::at(uv);
         let level = (window.level as usize).min(LEVELS);
-        let net = table.window_points(level, |k| window.point(k), &points);
         let at_vertex = window.at_vertex;
-        let tip = (at_vertex || level > LEVELS / 2).then(|| tip_normal(table, &points)).flatten();
+        let wants_tip = at_vertex || level > LEVELS / 2;
+        let (net, origin, tip) = match surface.pole_vertex(patch) {
+            Some(PoleVertex { limit, tangents }) => {
+                let net = surface.pole_window::<WINDOW_POINTS, _>(patch, level, |k| window.point(k));
+                (net, limit, wants_tip.then(|| tangents.normal()).flatten())
+            }
+            None => {
+                let (points, origin) = surface.irregular_net(patch, table);
+                let net = table.window_points(level, |k| window.point(k), &points);
+                (net, origin, wants_tip.then(|| Tangents::new(table, &points).normal()).flatten())
+            }
+        };
         Self {
             net,
             origin,
@@ -162,18 +180,6 @@ pub(super) fn unit(du: DVec3, dv: DVec3) -> DVec3 {
     du.normalize_or_zero().cross(dv.normalize_or_zero()).normalize_or_zero()
 }
 
-/// Normal of the tangent plane at the extraordinary vertex; `None` without a plane.
-fn tip_normal(table: &ClassTable, points: &[DVec3]) -> Option<DVec3> {
-    let [first, second] = table.tangents.as_ref()?.each_ref().map(|weights| combine(weights, points));
-    let size = points.iter().fold(0.0f64, |size, p| size.max(p.length()));
-    let normal = |a: DVec3, b: DVec3| {
-        let across = a.normalize_or_zero().cross(b.normalize_or_zero());
-        let clear = a.length().min(b.length()) > 1e-12 * size && across.length() > 1e-12;
-        clear.then(|| across.normalize())
-    };
-    normal(first, second).or_else(|| normal(first, combine(table.spare.as_ref()?, points)))
-}
-
 impl LimitSurface {
     fn local(&self, patch: usize, uv: [f64; 2]) -> Local {
         match (self.class(patch), self.has_triangles()) {
@@ -190,6 +196,12 @@ impl LimitSurface {
     /// infinite unless lambda is 1/2.
     pub fn evaluate(&self, patch: usize, uv: [f64; 2]) -> Jet {
         self.local(patch, uv).jet()
+    }
+
+    /// The normal at local (0,0) of a patch, that of [`evaluate`](Self::evaluate).
+    pub(crate) fn vertex_normal(&self, patch: usize) -> DVec3 {
+        let pole = self.pole_vertex(patch).and_then(|vertex| vertex.tangents.normal());
+        pole.unwrap_or_else(|| self.evaluate(patch, [0.0; 2]).normal)
     }
 
     /// Evaluates a patch at its local (u,v) with second derivatives. Near an extraordinary vertex they grow like

@@ -110,7 +110,7 @@ impl LoopRows {
     }
 
     /// Point (a,b) of the lattice one level finer.
-    fn refined(&self, a: isize, b: isize) -> Row {
+    pub fn refined(&self, a: isize, b: isize) -> Row {
         let own = usize::from(self.class.index);
         let count = self.class.spokes();
         let [sharp_v0, sharp_u0] = self.class.own_spokes().map(|spoke| self.class.is_sharp(spoke));

@@ -15,6 +15,7 @@ mod loop_rows;
 mod loop_surface;
 mod modes;
 mod moving;
+mod pole;
 mod product;
 mod real;
 mod rings;

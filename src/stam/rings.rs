@@ -6,16 +6,19 @@
 
 use super::class::{ClassTable, WINDOW_POINTS};
 use super::loop_rows::LOOP_WINDOW;
+use super::pole::Wedge;
 use super::surface::LimitSurface;
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 /// An irregular patch below one of its levels.
 #[derive(Debug, Clone)]
 pub struct Rings<'a> {
     table: &'a ClassTable,
     limit: DVec3,
-    /// (B / lambda)^(n-1) C, relative to the limit position.
+    /// (B / lambda)^(n-1) C, relative to the limit position; at a vertex of many faces points whose hull holds these.
     points: Vec<DVec3>,
+    /// What the levels come from at a vertex of many faces.
+    wedge: Option<Box<Wedge<'a>>>,
     /// Room for the points of the next level.
     next: Vec<DVec3>,
     /// lambda^(n-1).
@@ -57,7 +60,8 @@ impl Rings<'_> {
 
     /// The points of the level's [`WINDOWS`] of a quad, relative to [`limit`](Self::limit).
     pub fn grid(&self) -> Grid {
-        let mut grid = self.table.windows_of(&self.points);
+        let points = || self.table.windows_of(&self.points);
+        let mut grid = self.wedge.as_ref().map_or_else(points, |wedge| wedge.windows());
         for point in &mut grid {
             *point *= self.scale;
         }
@@ -71,7 +75,8 @@ impl Rings<'_> {
 
     /// The points of the level of a triangle, at the places of [`LOOP_WINDOW`], relative to [`limit`](Self::limit).
     pub fn loop_grid(&self) -> [DVec3; LOOP_WINDOW.len()] {
-        self.table.loop_windows_of(&self.points).map(|point| self.scale * point)
+        let points = || self.table.loop_windows_of(&self.points);
+        self.wedge.as_ref().map_or_else(points, |wedge| wedge.windows()).map(|point| self.scale * point)
     }
 
     /// The rings of the points that a linear map makes of these, from the level where they are.
@@ -79,13 +84,27 @@ impl Rings<'_> {
         for point in &mut self.points {
             *point = map(*point);
         }
+        let [x, y, z] = DVec3::AXES.map(map);
+        self.wedge = self.wedge.map(|wedge| Box::new(wedge.mapped(DMat3::from_cols(x, y, z))));
         self
     }
 
     /// One level deeper.
     pub fn descend(&mut self) {
-        self.table.step_once(&self.points, &mut self.next);
-        std::mem::swap(&mut self.points, &mut self.next);
+        match &mut self.wedge {
+            Some(wedge) => {
+                match self.table.is_of_triangles() {
+                    true => drop(wedge.descend::<{ LOOP_WINDOW.len() }>()),
+                    false => drop(wedge.descend::<WINDOW_POINTS>()),
+                }
+                self.points.clear();
+                self.points.extend(wedge.hull());
+            }
+            None => {
+                self.table.step_once(&self.points, &mut self.next);
+                std::mem::swap(&mut self.points, &mut self.next);
+            }
+        }
         self.scale *= self.table.lambda;
         self.level += 1;
     }
@@ -94,9 +113,13 @@ impl Rings<'_> {
 impl LimitSurface {
     /// The rings of an irregular patch from level 1; `None` for a regular one.
     pub fn rings(&self, patch: usize) -> Option<Rings<'_>> {
-        let table = &self.tables()[self.class(patch)?];
-        let (points, limit) = self.irregular_net(patch, table);
-        Some(Rings { table, limit, points, next: Vec::new(), scale: 1.0, level: 1 })
+        let table = &**self.tables().get(self.class(patch)?)?;
+        let wedge = self.wedge(patch).map(Box::new);
+        let (points, limit) = match &wedge {
+            Some(wedge) => (wedge.hull().collect(), wedge.limit()),
+            None => self.irregular_net(patch, table),
+        };
+        Some(Rings { table, limit, points, wedge, next: Vec::new(), scale: 1.0, level: 1 })
     }
 }
 

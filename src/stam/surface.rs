@@ -4,10 +4,12 @@ use super::box_spline;
 use super::class::{ClassTable, WINDOW_POINTS};
 use super::instances::{Instances, Placed};
 use super::loop_rows::LOOP_WINDOW;
+use super::pole::{PoleVertex, Poles, Stored, Wedge};
 use crate::mesh::SubdivMesh;
 use crate::patch::{Adjacency, PHANTOM, Patch, PatchError, PatchKind, Patches, Refinement, RingClass, Watch, slot};
 use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// The control net of a patch, as an evaluator wants it.
@@ -48,6 +50,8 @@ pub struct LimitSurface {
     points: Arc<Vec<DVec3>>,
     /// Where parts of a scene are others in another place, what is in `patches` and `points` once.
     instances: Option<Arc<Instances>>,
+    /// What patches at vertices of many faces share.
+    poles: Poles,
     diagonal: f64,
 }
 
@@ -89,6 +93,7 @@ impl LimitSurface {
     fn of(patches: Patches, points: Vec<DVec3>, mesh: &SubdivMesh) -> Self {
         let tables = patches.classes().par_iter().map(|&class| ClassTable::shared(class)).collect();
         Self {
+            poles: Poles::new(&patches),
             patches: Arc::new(patches),
             tables: Arc::new(tables),
             points: Arc::new(points),
@@ -138,10 +143,10 @@ impl LimitSurface {
         self.patches.class(self.stored(patch).0)
     }
 
-    /// Bytes of patches and points; tables of classes are small beside them.
+    /// Bytes of patches, of points, and of what is kept at vertices of many faces by now; tables of classes are small beside them.
     pub fn bytes(&self) -> u64 {
         let instances = self.instances.as_ref().map_or(0, |instances| size_of_val(instances.patches()));
-        self.patches.bytes() + (size_of_val(&self.points[..]) + instances) as u64
+        self.patches.bytes() + (size_of_val(&self.points[..]) + instances + self.poles.bytes()) as u64
     }
 
     /// Number of ptex faces, holes included.
@@ -170,8 +175,13 @@ impl LimitSurface {
                 let stored = self.points[vertex as usize];
                 [part.transform.map_or(stored, |transform| transform.transform_point3(stored)); 2]
             };
-            let supports = part.stored.clone().flat_map(|patch| self.patches.support(patch as usize));
-            supports.filter(used).map(place).reduce(both)
+            let supports = part.stored.clone().flat_map(|patch| self.patches.own_support(patch as usize));
+            let mut rings: Vec<u32> =
+                part.stored.clone().filter_map(|patch| Some(self.patches.wedge(patch as usize)?.1.ring)).collect();
+            rings.sort_unstable();
+            rings.dedup();
+            let rings = rings.iter().flat_map(|&ring| self.patches.ring(ring as usize));
+            supports.filter(used).chain(rings).map(place).reduce(both)
         };
         instances.parts().par_iter().filter_map(of_part).reduce_with(both)
     }
@@ -195,6 +205,12 @@ impl LimitSurface {
         }
     }
 
+    /// The patches that are stored.
+    #[cfg(test)]
+    pub(super) fn patches_stored(&self) -> &Patches {
+        &self.patches
+    }
+
     /// The kind of a patch.
     pub fn kind(&self, patch: usize) -> PatchKind {
         self.patches()[patch].kind
@@ -203,14 +219,14 @@ impl LimitSurface {
     /// Some control point of a patch, phantom points left out.
     pub(crate) fn control_point(&self, patch: usize) -> DVec3 {
         let (stored, transform) = self.stored(patch);
-        let mut support = self.patches.support(stored).iter();
+        let mut support = self.patches.own_support(stored).iter();
         let vertex = support.find(|&&vertex| vertex != PHANTOM).expect("corners are control points");
         let point = self.points[*vertex as usize];
         transform.map_or(point, |transform| transform.transform_point3(point))
     }
 
     /// Refined vertices that control a patch, [`PHANTOM`] where there is none.
-    pub(crate) fn support(&self, patch: usize) -> &[u32] {
+    pub(crate) fn support(&self, patch: usize) -> Cow<'_, [u32]> {
         self.patches.support(self.stored(patch).0)
     }
 
@@ -244,7 +260,7 @@ impl LimitSurface {
 
     /// The same patches over other refined points, those of all levels.
     pub(crate) fn with_refined(&self, points: Vec<DVec3>) -> Self {
-        Self { points: Arc::new(points), ..self.clone() }
+        Self { poles: Poles::new(&self.patches), points: Arc::new(points), ..self.clone() }
     }
 
     /// As [`with_refined`](Self::with_refined), of a mesh with another diagonal.
@@ -260,13 +276,14 @@ impl LimitSurface {
         let (mut patches, mut points) = ((*self.patches).clone(), (*self.points).clone());
         patches.set_support(patch, point, points.len() as u32);
         points.push(points[vertex as usize] + by);
-        Some(Self { patches: Arc::new(patches), points: Arc::new(points), ..self.clone() })
+        let poles = Poles::new(&patches);
+        Some(Self { patches: Arc::new(patches), points: Arc::new(points), poles, ..self.clone() })
     }
 
     /// The 16 points of a regular patch, phantom points filled in.
     pub(crate) fn regular_net(&self, patch: usize) -> [DVec3; 16] {
         let (patch, transform) = self.stored(patch);
-        let support = self.patches.support(patch);
+        let support = self.patches.own_support(patch);
         let mut net = [DVec3::ZERO; 16];
         for (point, &vertex) in net.iter_mut().zip(support) {
             if vertex != PHANTOM {
@@ -294,10 +311,10 @@ impl LimitSurface {
         std::array::from_fn(|k| (0..4).map(|row| rows[k / 4][row] * net[4 * row + k % 4]).sum())
     }
 
-    /// Control points of an irregular patch relative to s0, and s0.
+    /// Control points of an irregular patch of a small class relative to s0, and s0.
     pub(super) fn irregular_net(&self, patch: usize, table: &ClassTable) -> (Vec<DVec3>, DVec3) {
         let (patch, transform) = self.stored(patch);
-        let stored = self.patches.support(patch).iter().map(|&vertex| self.points[vertex as usize]);
+        let stored = self.patches.own_support(patch).iter().map(|&vertex| self.points[vertex as usize]);
         let mut points: Vec<DVec3> = match transform {
             Some(transform) => stored.map(|point| transform.transform_point3(point)).collect(),
             None => stored.collect(),
@@ -312,11 +329,41 @@ impl LimitSurface {
         (points, limit)
     }
 
+    /// A patch at a vertex of many faces, from level 1.
+    pub(super) fn wedge(&self, patch: usize) -> Option<Wedge<'_>> {
+        let (stored, transform) = self.stored(patch);
+        self.poles.wedge(self.stores(), stored, transform)
+    }
+
+    /// Of a patch at a vertex of many faces: that vertex.
+    pub(super) fn pole_vertex(&self, patch: usize) -> Option<PoleVertex> {
+        let (stored, transform) = self.stored(patch);
+        self.poles.vertex(self.stores(), stored, transform)
+    }
+
+    /// Of a patch at a vertex of many faces: the points numbered `point(k)` among the `W` points of a level.
+    pub(super) fn pole_window<const W: usize, const N: usize>(
+        &self,
+        patch: usize,
+        level: usize,
+        point: impl Fn(usize) -> usize,
+    ) -> [DVec3; N] {
+        let (stored, transform) = self.stored(patch);
+        self.poles.window::<W, N>(self.stores(), stored, transform, level, point)
+    }
+
+    fn stores(&self) -> Stored<'_> {
+        Stored { patches: &self.patches, tables: &self.tables, points: &self.points }
+    }
+
     /// Points of the levels of an irregular patch whose class keeps its matrices, each by its level and its number there, as in
     /// [`ClassTable::weights`]; none of others.
     pub(crate) fn window_points(&self, patch: usize, picked: &[[usize; 2]]) -> Vec<DVec3> {
         let Some(class) = self.class(patch) else { return Vec::new() };
         let table = &self.tables[class];
+        if !table.keeps_matrices() {
+            return Vec::new();
+        }
         let (points, _) = self.irregular_net(patch, table);
         picked.iter().filter_map(|&[level, k]| Some(combine(table.weights(level, k)?, &points))).collect()
     }
@@ -350,6 +397,15 @@ impl LimitSurface {
             };
         };
         let table = &self.tables[class];
+        if let Some(mut wedge) = self.wedge(patch) {
+            let (limit, lambda) = (wedge.limit(), table.lambda);
+            return match triangles {
+                true => {
+                    Net::IrregularTriangle { limit, lambda, levels: (0..levels).map(|_| wedge.descend()).collect() }
+                }
+                false => Net::Irregular { limit, lambda, levels: (0..levels).map(|_| wedge.descend()).collect() },
+            };
+        }
         let (points, limit) = self.irregular_net(patch, table);
         if triangles {
             let levels = (1..=levels).map(|level| table.loop_level_points(level, &points)).collect();

@@ -85,6 +85,8 @@ pub(super) struct Bins {
     pub bins: BTreeMap<Key, Bin>,
     /// Samples that a reference was not asked, because it corrupts memory there.
     pub not_asked: usize,
+    /// Samples at vertices of many faces that a reference was not asked, because it would take too long.
+    pub too_slow: usize,
     /// Patches without a sample that was judged inside: OpenSubdiv has an end cap all over them.
     pub unjudged: usize,
     /// Vertices of the refined level that limit masks have no room for; they are not asked then.

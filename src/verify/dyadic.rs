@@ -5,7 +5,7 @@ use super::bin::Bins;
 use super::difference::{Check, Normal, Sample};
 use super::flaw::Flaw;
 use super::key::{Against, Key, TierName};
-use super::references::{References, thinned};
+use super::references::References;
 use crate::osd::{Answer, Location, MAX_ISOLATION, ReferenceJet};
 use crate::patch::PatchKind;
 use crate::stam::Jet;
@@ -67,9 +67,19 @@ pub(super) fn run(subject: &Subject<'_>, references: &References<'_>, bins: &mut
     if let Some(answers) = bins.answered(TierName::Dyadic, Against::Far, references.far(&samples)) {
         compare(subject, Against::Far, &samples, &subject.evaluate_all(&samples), &answers, is_known_wrong, bins);
     }
-    let kept = thinned(&samples);
-    if let Some(answers) = bins.answered(TierName::Dyadic, Against::LimitStencils, references.stencils(&kept)) {
-        compare(subject, Against::LimitStencils, &kept, &subject.evaluate_all(&kept), &answers, is_known_wrong, bins);
+    let asked = references.for_stencils(&samples);
+    bins.too_slow += asked.left_out;
+    if let Some(answers) = bins.answered(TierName::Dyadic, Against::LimitStencils, references.stencils(&asked)) {
+        let samples = &asked.samples;
+        compare(
+            subject,
+            Against::LimitStencils,
+            samples,
+            &subject.evaluate_all(samples),
+            &answers,
+            is_known_wrong,
+            bins,
+        );
     }
 }
 

@@ -12,7 +12,9 @@ const PER_FACE: usize = 64;
 const BUDGET: usize = 400_000;
 
 pub(super) fn run(subject: &Subject<'_>, references: &References<'_>, bins: &mut Bins) {
-    let samples = scattered(subject, PER_FACE, BUDGET);
+    let scattered = scattered(subject, PER_FACE, BUDGET);
+    let samples = references.expense.for_bfr(&scattered);
+    bins.too_slow += scattered.len() - samples.len();
     let answers = references.bfr(Bfr::DEFAULT_LEVELS, &samples);
     let Some(answers) = bins.answered(TierName::EndCap, Against::BfrEndCaps, answers) else { return };
     bins.not_asked += answers.iter().filter(|a| a.answer == Answer::NotAsked).count();

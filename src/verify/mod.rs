@@ -11,6 +11,7 @@ pub mod conformance;
 mod difference;
 mod dyadic;
 mod endcap;
+mod expense;
 mod failures;
 mod flaw;
 mod fragment;

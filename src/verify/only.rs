@@ -4,7 +4,7 @@ use super::difference::{Sample, angle_deg};
 use super::failures::control_faces;
 use super::flaw::Flaw;
 use super::plant::Plant;
-use super::references::{ReferenceError, References};
+use super::references::{Asked, ReferenceError, References};
 use super::rounding::Rounding;
 use super::{Settings, Subject, VerifyError, judgeable, vertex};
 use crate::gpu::{self, Gpu};
@@ -187,7 +187,7 @@ fn evaluations(
     let answer = if compare.ours.is_some() { "exact" } else { "hole" };
     let mut all = vec![compare.evaluation("ours, f64", answer, compare.ours)];
     all.extend([
-        compare.reference("limit stencils level 10", references.stencils(&samples)),
+        compare.reference("limit stencils level 10", references.stencils(&Asked::all(&samples))),
         compare.reference("Far level 10", references.far(&samples)),
         compare.reference("Bfr 10/10", references.bfr((MAX_ISOLATION, MAX_ISOLATION), &samples)),
         compare.reference("Bfr 2/6", references.bfr(Bfr::DEFAULT_LEVELS, &samples)),

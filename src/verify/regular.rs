@@ -5,7 +5,7 @@ use super::Subject;
 use super::bin::Bins;
 use super::difference::Sample;
 use super::key::{Against, Key, TierName};
-use super::references::{References, thinned};
+use super::references::References;
 use crate::osd::{Answer, Bfr, Location, ReferenceJet};
 use crate::stam::Jet;
 use crate::statistics::scatter;
@@ -47,20 +47,24 @@ fn inside(subject: &Subject<'_>, patches: &[usize], each: u32) -> Vec<Location> 
 }
 
 pub(super) fn run(subject: &Subject<'_>, references: &References<'_>, bins: &mut Bins) {
-    let samples = scattered(subject, PER_FACE, BUDGET);
+    let scattered = scattered(subject, PER_FACE, BUDGET);
+    let samples = references.expense.for_bfr(&scattered);
+    bins.too_slow += scattered.len() - samples.len();
     // A small patch may have been missed: none is, whatever the size of the mesh.
     let every: Vec<usize> = (0..subject.surface.patches().len()).collect();
-    let mut all = [&*samples, &inside(subject, &every, PER_PATCH)].concat();
+    let mut all = [&*scattered, &inside(subject, &every, PER_PATCH)].concat();
     all.sort_by_key(|sample| sample.0);
-    let kept = thinned(&all);
+    let asked = references.for_stencils(&all);
+    bins.too_slow += asked.left_out;
     // Bfr, which has one thread, answers while limit stencils are made.
-    let (bfr, stencils) = both(|| references.bfr(Bfr::DEFAULT_LEVELS, &samples), || references.stencils(&kept));
+    let (bfr, stencils) = both(|| references.bfr(Bfr::DEFAULT_LEVELS, &samples), || references.stencils(&asked));
     if let Some(answers) = bins.answered(TierName::Regular, Against::Bfr, bfr) {
         bins.not_asked += answers.iter().filter(|a| a.answer == Answer::NotAsked).count();
         compare(subject, Against::Bfr, &samples, &subject.evaluate_all(&samples), &answers, bins);
     }
     if let Some(answers) = bins.answered(TierName::Regular, Against::LimitStencils, stencils) {
-        compare(subject, Against::LimitStencils, &kept, &subject.evaluate_all(&kept), &answers, bins);
+        let kept = &asked.samples;
+        compare(subject, Against::LimitStencils, kept, &subject.evaluate_all(kept), &answers, bins);
     }
 
     let mut judged = vec![false; every.len()];

@@ -116,6 +116,9 @@ pub struct MeshReport {
     pub limit_masks_not_asked: usize,
     /// References that did not answer; each fails the mesh.
     pub reference_unanswered: Vec<Unanswered>,
+    /// Samples at vertices of many faces that limit stencils and Bfr were not asked, because they take time with the cube and the
+    /// square of the number of faces there.
+    pub reference_too_slow: usize,
     /// Patches that no sample inside judged in tier `regular`: OpenSubdiv has an end cap all over them, so they are compared
     /// at dyadic points alone.
     pub patches_unjudged: usize,
@@ -261,7 +264,7 @@ impl MeshReport {
         for patch in surface.patches() {
             *patches.entry(patch.kind.name()).or_default() += 1;
         }
-        let Bins { not_asked, crowded, unjudged, .. } = bins;
+        let Bins { not_asked, too_slow, crowded, unjudged, .. } = bins;
         let unanswered = |bin::Unanswered { tier, against, why }: bin::Unanswered| Unanswered {
             tier: tier.name(),
             reference: against.name(),
@@ -288,6 +291,7 @@ impl MeshReport {
             faces: mesh.face_count(),
             patches,
             reference_not_asked: not_asked,
+            reference_too_slow: too_slow,
             limit_masks_not_asked: crowded,
             patches_unjudged: unjudged,
             pass: reference_unanswered.is_empty()

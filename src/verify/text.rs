@@ -97,6 +97,14 @@ impl MeshReport {
             let vertices = count(self.limit_masks_not_asked, "vertex");
             writeln!(f, "  limit masks: not asked: {vertices} with so many faces that it writes beyond its arrays")?;
         }
+        if self.reference_too_slow > 0 {
+            let samples = count(self.reference_too_slow, "sample");
+            writeln!(
+                f,
+                "  limit stencils, Bfr: {samples} at vertices of many faces not asked: they take time with the cube and the \
+                 square of the valence"
+            )?;
+        }
         if self.patches_unjudged > 0 {
             let are = if self.patches_unjudged == 1 { "is" } else { "are" };
             let patches = count(self.patches_unjudged, "patch");

@@ -57,7 +57,7 @@ fn compare(path: &Path, stage: &Stage, compared: &mut Compared) {
     let file = MeshFile::open(path).unwrap_or_else(|error| panic!("{error}"));
     for moment in &stage.times {
         let read = |prims: Vec<String>| {
-            let choice = Choice { prims, time: moment.time };
+            let choice = Choice { prims, time: moment.time, ..Choice::default() };
             file.read(&choice).unwrap_or_else(|error| panic!("{} at {:?}: {error}", path.display(), moment.time))
         };
         let whole = read(Vec::new());

@@ -5,7 +5,7 @@ mod adaptive;
 use adaptive::AdaptiveLevel;
 
 use super::args::InfoArgs;
-use super::{Failure, progress, refined, write_out};
+use super::{Failure, Steps, progress, refined, write_out};
 use crate::gpu;
 use crate::mesh::{Boundary, Creasing, FacePlace, Orientation, Part, SubdivMesh, TriangleRule};
 use crate::osd::{INFINITE_SHARPNESS, Level, MAX_ISOLATION, Refiner, Rule};
@@ -134,8 +134,14 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), Failure> {
     let deepest = args.levels.unwrap_or(if mesh.face_count() <= MANY_FACES { MAX_ISOLATION } else { 3 });
     // OpenSubdiv's patches of triangles are not read.
     let deepest = if surface.has_triangles() { 0 } else { deepest };
-    let levels = (1..=deepest).map(|level| AdaptiveLevel::new(&mesh, &surface, level));
+    let steps = Steps::new(deepest as usize, "levels of OpenSubdiv's patches");
+    let levels = (1..=deepest).map(|level| {
+        let level = AdaptiveLevel::new(&mesh, &surface, level);
+        steps.done_one();
+        level
+    });
     info.opensubdiv = levels.collect::<Result<_, _>>().map_err(|e| Failure::of(&mesh, e))?;
+    drop(steps);
     let text = if args.json {
         serde_json::to_string_pretty(&info).map_err(std::io::Error::from)? + "\n"
     } else {

@@ -168,7 +168,7 @@ impl PatchSource for LimitSurface {
 
     fn patch(&self, patch: usize, levels: usize) -> PatchNet {
         let record = self.patches()[patch];
-        let normal = || self.evaluate(patch, [0.0, 0.0]).normal;
+        let normal = || self.vertex_normal(patch);
         let net = match self.net_for_tables(patch, levels) {
             Net::Triangle(points) => TableNet::Triangle(points),
             Net::IrregularTriangle { limit, lambda, levels } => {

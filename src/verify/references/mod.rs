@@ -12,6 +12,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
+use super::expense::Expense;
 use super::key::Against;
 pub(super) use oracle::Masks;
 use oracle::{Answer, Oracle, Question};
@@ -51,11 +52,30 @@ pub enum ReferenceError {
 /// There are two of everything, so that two can answer at a time: limit masks and stencils by one, Far and Bfr by the other.
 pub(super) struct References<'a> {
     mesh: &'a SubdivMesh,
+    /// What OpenSubdiv's evaluators cost at the faces of the mesh.
+    pub expense: Expense,
     process: &'a Process,
     /// The evaluator that is to crash ([`Plant::Crash`](super::Plant::Crash)).
     crash: Option<Against>,
     masks_and_stencils: Mutex<Seat>,
     far_and_bfr: Mutex<Seat>,
+}
+
+/// Samples that limit stencils are asked about.
+pub(super) struct Asked {
+    /// All of them.
+    pub samples: Vec<Location>,
+    /// Lengths of their portions, each asked about by itself; at the end comes the rest.
+    portions: Vec<usize>,
+    /// Samples at vertices of many faces that are left out, because OpenSubdiv would take too long.
+    pub left_out: usize,
+}
+
+impl Asked {
+    /// Samples of one face, whatever they cost.
+    pub fn all(samples: &[Location]) -> Self {
+        Self { samples: samples.to_vec(), portions: Vec::new(), left_out: 0 }
+    }
 }
 
 /// Who answers, once there is somebody.
@@ -69,7 +89,8 @@ enum Seat {
 
 impl<'a> References<'a> {
     pub fn new(mesh: &'a SubdivMesh, process: &'a Process, crash: Option<Against>) -> Self {
-        Self { mesh, process, crash, masks_and_stencils: Mutex::default(), far_and_bfr: Mutex::default() }
+        let expense = Expense::new(mesh);
+        Self { mesh, expense, process, crash, masks_and_stencils: Mutex::default(), far_and_bfr: Mutex::default() }
     }
 
     /// A uniform refinement to `level`, and the limits of its vertices.
@@ -80,9 +101,20 @@ impl<'a> References<'a> {
         }
     }
 
-    /// Limit stencils at the deepest isolation; samples come grouped by face.
-    pub fn stencils(&self, samples: &[Location]) -> Result<Vec<ReferenceJet>, ReferenceError> {
-        self.jets(Against::LimitStencils, Question::Stencils(samples.to_vec()))
+    /// Which of some samples, which come grouped by face, limit stencils are asked about.
+    pub fn for_stencils(&self, samples: &[Location]) -> Asked {
+        let (cheap, dear) = self.expense.for_stencils(samples);
+        let portions: Vec<usize> = dear.iter().map(Vec::len).collect();
+        let left_out = samples.len() - cheap.len() - portions.iter().sum::<usize>();
+        let samples = dear.into_iter().chain([thinned(&cheap)]).flatten().collect();
+        Asked { samples, portions, left_out }
+    }
+
+    /// Limit stencils at the deepest isolation.
+    pub fn stencils(&self, asked: &Asked) -> Result<Vec<ReferenceJet>, ReferenceError> {
+        let Asked { samples, portions, .. } = asked;
+        let question = Question::Stencils { samples: samples.clone(), portions: portions.clone() };
+        self.jets(Against::LimitStencils, question)
     }
 
     /// The limit stencil of one sample.
@@ -152,7 +184,7 @@ const STENCIL_FACES: usize = 2048;
 const RUN: usize = 16;
 
 /// The samples of evenly spread faces, no more than limit stencils are made for. Samples come grouped by face.
-pub(super) fn thinned(samples: &[Location]) -> Vec<Location> {
+fn thinned(samples: &[Location]) -> Vec<Location> {
     let faces = samples.chunk_by(|a, b| a.0 == b.0);
     let stride = faces.clone().count().div_ceil(STENCIL_FACES).max(1);
     let kept = faces.enumerate().filter(|(i, _)| (i / RUN).is_multiple_of(stride));

@@ -6,6 +6,7 @@ use crate::osd::{
     Stencil,
 };
 use glam::DVec3;
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 /// What one of OpenSubdiv's evaluators is asked.
@@ -13,8 +14,8 @@ use serde::{Deserialize, Serialize};
 pub(super) enum Question {
     /// `PrimvarRefiner::Limit` after a uniform refinement to this level.
     LimitMasks { level: u32 },
-    /// Limit stencils at samples, grouped by face.
-    Stencils(Vec<Location>),
+    /// Limit stencils at samples, grouped by face in each portion; `portions` has the lengths of all portions but the last.
+    Stencils { samples: Vec<Location>, portions: Vec<usize> },
     /// The limit stencil of a sample.
     Stencil(Location),
     /// Far's patches at samples.
@@ -71,12 +72,27 @@ impl Oracle {
     pub fn answer(&mut self, question: Question) -> Result<Answer, Error> {
         match question {
             Question::LimitMasks { level } => Ok(Answer::Masks(Box::new(self.masks(level)?))),
-            Question::Stencils(samples) => Ok(Answer::Jets(self.stencils()?.evaluate(&samples)?)),
+            Question::Stencils { samples, portions } => Ok(Answer::Jets(self.in_portions(&samples, &portions)?)),
             Question::Stencil(sample) => Ok(Answer::Stencil(self.stencils()?.stencil(sample)?)),
             Question::Far(samples) => Ok(Answer::Jets(self.far()?.evaluate(&samples)?)),
             Question::Bfr { levels, samples } => Ok(Answer::Jets(Bfr::new(&self.mesh, levels)?.evaluate(&samples)?)),
             Question::Crash => crash(),
         }
+    }
+
+    /// Limit stencils portion by portion, as each call refines the faces that it asks about.
+    fn in_portions(&mut self, samples: &[Location], portions: &[usize]) -> Result<Vec<ReferenceJet>, Error> {
+        let mut rest = samples;
+        let mut parts: Vec<&[Location]> = Vec::with_capacity(portions.len() + 1);
+        for &length in portions {
+            let (part, others) = rest.split_at(length.min(rest.len()));
+            parts.push(part);
+            rest = others;
+        }
+        parts.push(rest);
+        let stencils = self.stencils()?;
+        let answers: Vec<_> = parts.into_par_iter().map(|part| stencils.evaluate(part)).collect::<Result<_, _>>()?;
+        Ok(answers.concat())
     }
 
     fn masks(&self, level: u32) -> Result<Masks, Error> {

@@ -1,6 +1,8 @@
 //! Properties of the exact limit that need no reference: patches meet, derivatives are derivatives, parameters map.
 
+#[path = "../common/mod.rs"]
 mod common;
+mod poles;
 
 use catoptric::mesh::{self, SubdivMesh};
 use catoptric::patch::PatchKind;
