@@ -183,6 +183,9 @@ impl<'a> Divider<'a> {
         if flat.is_none() && piece.has_no_area() {
             return;
         }
+        if flat.as_ref().is_some_and(|flat| is_between_samples(flat, count, &samples)) {
+            return;
+        }
         let chart = flat.as_ref().and_then(|flat| flat.chart(bounds));
         if count <= FEW {
             return self.solve(piece, flat.as_ref(), chart.as_ref(), samples);
@@ -264,6 +267,17 @@ impl<'a> Divider<'a> {
         let place = self.lens.place(sample, depth);
         self.out.specks.push(SpeckRecord { place, patch_id: self.patch + 1, uv, residual });
     }
+}
+
+/// Whether a piece passes between the samples in its bounds. Asked of slivers, as the faces round a vertex of many faces are: they
+/// see a sample here and there, and would be halved until their bounds are no longer than a sample.
+fn is_between_samples(flat: &Flat, count: usize, samples: &[Range<u32>; 2]) -> bool {
+    /// Samples that are tried: to halve the piece once costs as much as some ten.
+    const MOST: usize = 64;
+    /// Part of its bounds that a sliver covers, at most.
+    const SLIVER: f64 = 0.25;
+    let is_sliver = count > FEW && count <= MOST && flat.frame.area < SLIVER * count as f64;
+    is_sliver && each(samples.clone()).all(|sample| flat.misses(centre(sample)))
 }
 
 /// The samples of a rectangle.

@@ -23,6 +23,8 @@ pub(super) struct Frame {
     pub slope: f64,
     /// Whether v is longer than u, in city blocks.
     pub longer_along_v: bool,
+    /// Samples that the linear map's parallelogram covers.
+    pub area: f64,
 }
 
 impl Frame {
@@ -50,7 +52,8 @@ impl Frame {
         let start = [0, 1].map(|row: usize| 0.5 - inverse[row][0] * offset[0] - inverse[row][1] * offset[1]);
         let slope = [middle.du, middle.dv].iter().map(|d| lens.weight_change(d[2]).abs()).sum::<f64>() * scale;
         let longer_along_v = dv[0].abs() + dv[1].abs() > du[0].abs() + du[1].abs();
-        Some(Frame { centre, depth: middle.value[2], weight, inverse, start, slope, longer_along_v })
+        let area = determinant.abs();
+        Some(Frame { centre, depth: middle.value[2], weight, inverse, start, slope, longer_along_v, area })
     }
 
     /// (u,v) that the linear map gives a sample, less those of the centre.
