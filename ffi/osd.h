@@ -30,6 +30,9 @@ const char *osd_version(void);
 int32_t osd_stdout_was_closed(void);
 /* All threads that come allocate from one arena; nothing where the allocator has none (elsewhere than in glibc). */
 void osd_share_one_arena(void);
+/* Signals such as SIGSEGV end the process with one line on standard error and exit code 2 from now on. */
+void osd_name_fatal_signals(void);
+
 /* Ends the process at once: nothing is flushed, and no destructor runs. */
 void osd_end_process(int32_t code);
 

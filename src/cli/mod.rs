@@ -134,6 +134,10 @@ pub fn run(commit: &str) -> ExitCode {
             return ExitCode::from(2);
         }
     };
+    // The process that started a worker asks how it ended.
+    if !matches!(cli.command, Command::ReferenceWorker) {
+        crate::osd::name_fatal_signals();
+    }
     discard_unfinished_when_stopped();
     let ready = cli.memory.apply().and_then(|()| match cli.command {
         // Known before the work, where all of the answer goes there.

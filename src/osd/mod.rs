@@ -20,7 +20,7 @@ mod version;
 pub use embree::{EmbreeCamera, EmbreeSamples, EmbreeSubdivision, EmbreeTriangles};
 pub use patches::{EndCap, FarNet, FarOptions, FarPatch, Isolation};
 pub use peers::{BfrPeer, OsdPeer, PeerSamples};
-pub use process::{Allocator, on_out_of_memory, share_one_arena, stdout_was_closed};
+pub use process::{Allocator, name_fatal_signals, on_out_of_memory, share_one_arena, stdout_was_closed};
 pub use reference::{Answer, Bfr, Far, Location, Reference, ReferenceJet};
 pub use refiner::{Level, LimitMasks, NO_TWIN, Refiner, Rule};
 pub use stencils::{LimitStencils, Stencil};

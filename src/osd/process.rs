@@ -20,6 +20,13 @@ pub fn share_one_arena() {
     unsafe { raw::osd_share_one_arena() }
 }
 
+/// Lets signals that end the process (SIGSEGV and its like, from a library that reads out of bounds) end it with one line on standard error and
+/// exit code 2 from now on: for programs. What is half done is lost all the same.
+pub fn name_fatal_signals() {
+    // SAFETY: it sets handlers that only write and end the process.
+    unsafe { raw::osd_name_fatal_signals() }
+}
+
 /// The system's allocator, which ends the process with one line and exit code 2 where there is no memory, in place of an abort: for
 /// programs, as their `#[global_allocator]`. What could be tried in another way without the memory is ended too.
 #[derive(Debug)]
