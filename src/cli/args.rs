@@ -187,7 +187,8 @@ pub(super) struct InfoArgs {
     #[arg(long)]
     pub json: bool,
     /// Deepest level of OpenSubdiv's feature-adaptive patches to list, 0 to 10: number, memory, and how far their end caps
-    /// are from the limit [default: 10; 3 for meshes of more than 20,000 faces]
+    /// are from the limit [default: 10; 3 for meshes of more than 20,000 faces, 0 where more than
+    /// 1,024 meet at a vertex]
     #[arg(long, value_name = "LEVEL", value_parser = clap::value_parser!(u32).range(0..=i64::from(MAX_ISOLATION)))]
     pub levels: Option<u32>,
 }

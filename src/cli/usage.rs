@@ -16,7 +16,9 @@ pub(super) fn commands() -> Vec<String> {
 
 /// What clap found, in our words; `args` are those of the process, its name first.
 pub(super) fn line(error: &Error, args: &[OsString]) -> String {
-    let all = Cli::command();
+    let mut all = Cli::command();
+    // Only then arguments can be shown.
+    all.build();
     let words: Vec<&str> = args.iter().skip(1).filter_map(|arg| arg.to_str()).collect();
     let of = words.iter().filter(|word| **word != "help").find_map(|word| all.find_subcommand(word));
     let help = of.map_or_else(|| "catoptric --help".to_owned(), |of| format!("catoptric {} --help", of.get_name()));

@@ -24,7 +24,7 @@ fn what_is_missing_is_said() {
         ("render folder", "folder: it is a folder, and one mesh is wanted; name a file in it"),
         (
             "render notes.txt",
-            "notes.txt: only .obj, .usd, .usda, .usdc and .usdz are read; export the mesh as one of these",
+            "notes.txt: only .obj, .usd, .usda, .usdc and .usdz are read, also with .gz behind; export the mesh as one of these",
         ),
         ("eval none.xyz --samples samples.csv", "none.xyz: no such file; check the path"),
         (
