@@ -5,14 +5,15 @@ use catoptric::mesh::{Boundary, Creasing, SubdivMesh, sample};
 use catoptric::osd::{self, Bfr, EndCap, Far, FarOptions, Isolation, Location, Reference, ReferenceJet};
 use catoptric::stam::LimitSurface;
 use catoptric::verify::Sample;
-use catoptric::verify::conformance::{Answer, Results, Terms, Tolerances, conformance, sample_set};
+use catoptric::verify::conformance::{Answer, DEFAULT_PER_FACE, Results, Terms, Tolerances, conformance, sample_set};
 use glam::DVec3;
 use opensubdiv_rs::far::{
     AdaptiveOptions, PatchMap, PatchTableFactory, PrimvarRefiner, TopologyDescriptor, TopologyRefinerFactory,
 };
 use opensubdiv_rs::sdc;
 
-const PER_FACE: usize = 40;
+/// Enough for some to lie in the deepest end caps.
+const PER_FACE: usize = DEFAULT_PER_FACE;
 
 /// The standard samples.
 fn asked(mesh: &SubdivMesh) -> Vec<Sample> {
@@ -91,9 +92,10 @@ fn of_the_port(mesh: &SubdivMesh, level: usize) -> Vec<Answer> {
     asked(mesh).into_iter().map(|at| answer(at, jet(at))).collect()
 }
 
-fn judged(mesh: &SubdivMesh, answers: &[Answer]) -> Results {
-    // What 64 bits can do: the default lets the deepest end caps pass.
-    let tolerances = Tolerances { position: 1e-9, normal_deg: 1e-4, derivative: 1e-7 };
+/// What 64 bits can do: the default lets the deepest end caps pass.
+const OF_64_BITS: Tolerances = Tolerances { position: 1e-9, normal_deg: 1e-4, derivative: 1e-7 };
+
+fn judged_within(tolerances: Tolerances, mesh: &SubdivMesh, answers: &[Answer]) -> Results {
     let terms = Terms { per_face: PER_FACE, tolerances, partial: false };
     let report = conformance(mesh, answers, &terms).expect("it can be judged");
     let results = report.results.expect("answers were judged");
@@ -102,9 +104,16 @@ fn judged(mesh: &SubdivMesh, answers: &[Answer]) -> Results {
     results
 }
 
+fn judged(mesh: &SubdivMesh, answers: &[Answer]) -> Results {
+    judged_within(OF_64_BITS, mesh, answers)
+}
+
 /// What the answers are said to be; they are this to within `residual`, and all of them.
 fn said(mesh: &SubdivMesh, answers: &[Answer], residual: f64) -> String {
-    let results = judged(mesh, answers);
+    of_results(mesh, &judged(mesh, answers), residual)
+}
+
+fn of_results(mesh: &SubdivMesh, results: &Results, residual: f64) -> String {
     let [finding] = results.diagnosis.as_slice() else { panic!("{}: {results}", mesh.name) };
     assert!(finding.residual.is_some_and(|left| left <= residual), "{}: {finding}", mesh.name);
     let [fits, all] = finding.all.unwrap_or([finding.fits, finding.of]);
@@ -123,9 +132,10 @@ const PATCHES: &str = "the answers are those of OpenSubdiv's patches (Far) at is
 /// It sat the test as it is published.
 #[test]
 fn the_port_of_far_is_recognised() {
-    for mesh in [sample(), own("cube"), own("semi_sharp_pole_5")] {
+    for mesh in [sample(), own("cube"), own("pole_5")] {
         for level in [1, 2, 3, 5] {
-            let said = said(&mesh, &of_the_port(&mesh, level), 1e-6);
+            let results = judged_within(Tolerances::default(), &mesh, &of_the_port(&mesh, level));
+            let said = of_results(&mesh, &results, 1e-6);
             assert!(said.starts_with(&format!("{PATCHES} {level} with Gregory end caps")), "{}: {said}", mesh.name);
             assert!(said.ends_with("to the rounding of 32-bit floats"), "{said}");
         }
@@ -134,7 +144,7 @@ fn the_port_of_far_is_recognised() {
 
 #[test]
 fn patches_are_recognised_at_any_isolation() {
-    for mesh in [own("cube"), own("n_gons"), own("semi_sharp_pole_5")] {
+    for mesh in [own("cube"), own("n_gons"), own("pole_5")] {
         for level in 1..=10 {
             let answers = of_far(&mesh, gregory(level), |x| x);
             assert_said(&mesh, &answers, 1e-13, &format!("{PATCHES} {level} with Gregory end caps"));
@@ -342,9 +352,8 @@ fn what_is_nobodys_is_not_given_to_anybody() {
     let results = judged(&mesh, &mixed);
     assert!(results.diagnosis.iter().all(|finding| finding.all.is_none()), "{results}");
     let nearest = results.nearest.as_ref().expect("one is near");
-    assert!(
-        nearest.program.contains("isolation 3 with Gregory") && nearest.part > 0.5 && nearest.part < 0.95,
-        "{results}"
-    );
+    // On a cube Bfr at level 3 is the same surface.
+    let is_third = ["isolation 3 with Gregory", "levels 3 (smooth)"].iter().any(|name| nearest.program.contains(name));
+    assert!(is_third && nearest.part > 0.5 && nearest.part < 0.95, "{results}");
     assert!(nearest.missed > 1e-6 && results.to_string().contains("nearest: "), "{results}");
 }

@@ -147,7 +147,9 @@ pub(super) fn find(judge: &Judge<'_>, per_face: usize, answers: &[Judged]) -> Di
         derivative.or_else(|| examined.inexact("derivative", &derivatives).filter(|_| by_derivative)),
         normal.or_else(|| examined.inexact("normal", &normals).filter(|_| by_normal)),
     ];
-    Diagnosis { findings: found.into_iter().flatten().collect(), nearest: near }
+    let findings: Vec<Finding> = found.into_iter().flatten().collect();
+    let nearest = near.filter(|_| findings.is_empty());
+    Diagnosis { findings, nearest }
 }
 
 /// A mistake, the mesh by its rules and its limit.

@@ -98,7 +98,10 @@ pub(super) fn search(
                 let ties: Vec<&Candidate> = accepted.iter().filter(same).collect();
                 match confirm(judge, &neighbours, &by_face, &best, &ties, supposed) {
                     Ok(finding) => {
-                        if finding.fits as f64 >= WHOLE * finding.of as f64 {
+                        // Positions alone may be those of two programs to within a few; whoever gives the rest too may come later.
+                        let least = if best.habit.positions_alone { 1.0 } else { WHOLE };
+                        let is_whole = |[fits, all]: [usize; 2]| fits as f64 >= least * all as f64;
+                        if is_whole([finding.fits, finding.of]) && finding.all.is_none_or(is_whole) {
                             return (Some(finding), None);
                         }
                         if found.as_ref().is_none_or(|f| finding.fits > f.fits) {
@@ -120,7 +123,7 @@ pub(super) fn search(
 /// Programs of a stage that explain a few faces and are tried on all.
 const ATTEMPTS: usize = 3;
 
-/// Part of the failing answers that must be explained for no other program to be asked.
+/// Part of the failing answers, and of all, that must be explained for no other program to be asked.
 const WHOLE: f64 = 0.999;
 
 /// Whether an answer fails in what is compared.
