@@ -54,8 +54,11 @@ fn output_that_nobody_reads() {
         drop(reader);
         let output = command(&folder, &args).stdout(writer).output().expect("the program starts");
         let message = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(0), "{args:?}: {message}");
-        assert_eq!(message, "", "{args:?}");
+        // The verdict is that of the command, which found out all the same.
+        let read = command(&folder, &args).output().expect("the program starts");
+        assert_eq!(output.status.code(), read.status.code(), "{args:?}: {message}");
+        assert!(matches!(read.status.code(), Some(0 | 1)), "{args:?}");
+        assert!(!message.contains("catoptric: "), "{args:?}: {message}");
     }
 }
 
@@ -71,7 +74,9 @@ fn output_that_is_closed() {
         // Whoever discards the answer on purpose has it: for writing alone, as shells do, and for both, as Python does.
         for redirection in [">/dev/null", "1<>/dev/null"] {
             let output = by_shell(&folder, redirection, &args);
-            assert!(output.status.success(), "{args:?} {redirection}");
+            // Poles of a cube are beyond what `quality` takes, which is its verdict.
+            let verdict = i32::from(args[0] == "quality");
+            assert_eq!(output.status.code(), Some(verdict), "{args:?} {redirection}");
         }
     }
     let args = [String::from("info"), mesh("cube")];

@@ -1,6 +1,6 @@
 //! Files cut off at every hundredth: what is left is read as what it says, or refused in one line.
 
-use super::{Folder, mesh, refusal};
+use super::{Folder, mesh};
 use catoptric::cli::{parse_answers, parse_samples};
 use catoptric::mesh::{self as meshes, SubdivMesh};
 use catoptric::rig::{Rig, RigFormat};
@@ -172,10 +172,13 @@ fn pictures_and_reports() {
         for (percent, part) in cuts(&whole).step_by(7) {
             folder.write(frame, part);
             let output = folder.run(&args);
-            let kept = std::fs::read(folder.path(frame)).expect("a frame") == part;
-            assert!(kept, "{percent} % of {frame} are overwritten");
-            let message = refusal(&output);
+            let message = String::from_utf8_lossy(&output.stderr);
+            assert!(output.status.success() && message.contains("not whole"), "{percent} %: {message}");
             assert!(message.contains(frame), "{percent} %: {message}");
+            assert!(
+                std::fs::read(folder.path(frame)).expect("a frame") == whole,
+                "{percent} % of {frame} are not mended"
+            );
         }
     }
     let report = folder.run(&["verify", &cube, "--size=16x16", "--json=whole.json"]);
