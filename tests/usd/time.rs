@@ -190,9 +190,11 @@ fn animations_are_their_pictures_one_by_one() {
     let other = fs::read_to_string(folder.join("mesh.0003.obj")).expect("a file") + "t corner 1/1/0 5 2\n";
     fs::write(folder.join("mesh.0003.obj"), other).expect("a file");
     let message = refusal(folder, &["render", "mesh.####.obj", "-o", "x.png", "--time", "1:3", "--size", "16x16"]);
+    // What was drawn until then is there, and is named.
     assert_eq!(
         message,
-        "mesh.0003: at time 3 sharp vertices differ, so it is another surface; give frames of one topology"
+        "wrote x_0001.png to x_0002.png, 2 pictures of 16x16 pixels\n\
+         catoptric: mesh.0003: at time 3 sharp vertices differ, so it is another surface; give frames of one topology"
     );
 }
 
