@@ -75,10 +75,16 @@ impl Drop for Series {
 }
 
 /// The refusal of whoever comes second.
-fn taken(output: &Path, file: File) -> Failure {
+fn taken(output: &Path, mut file: File) -> Failure {
     let mut record = String::new();
-    // A record that is not there yet, or cannot be read, says nothing.
-    let _ = file.take(MOST_TOLD).read_to_string(&mut record);
+    // It is written as soon as the lock is there. One that cannot be read says nothing.
+    for _ in 0..20 {
+        let _ = file.rewind().and_then(|()| (&file).take(MOST_TOLD).read_to_string(&mut record));
+        if !record.trim().is_empty() {
+            break;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(10));
+    }
     let who = if record.trim().is_empty() { String::new() } else { format!(" ({})", record.trim()) };
     Failure::Bad(format!(
         "{}: another run is drawing this series{who}; wait until it is done, or choose another -o",

@@ -130,7 +130,6 @@ fn encode(out: &mut dyn WriteSeek, layers: &Layers<'_>) -> std::io::Result<()> {
     // As UTF-8, whatever the mesh is called.
     let made_by = Text::from_bytes_unchecked(layers.made_by.as_bytes().into());
     attributes.other.insert(Text::from(MADE_BY), AttributeValue::Text(made_by));
-    attributes.other.insert(Text::from(DIGEST), AttributeValue::Text(Text::from(seal::BLANK)));
     let pixel = |at: Vec2<usize>| {
         let i = at.y() * width as usize + at.x();
         let ([r, g, b, a], p) = (layers.colour.rgba[i], layers.pixel(i));
@@ -155,7 +154,10 @@ fn encode(out: &mut dyn WriteSeek, layers: &Layers<'_>) -> std::io::Result<()> {
         .with_channel::<f32>("residual")
         .with_pixel_fn(pixel);
     let layer = Layer::new((width as usize, height as usize), attributes, Encoding::SMALL_LOSSLESS, channels);
-    let image = Image::new(ImageAttributes::with_size((width as usize, height as usize)), layer);
+    // Not beside the other: of several, a header has the first one that a hash finds, and the file would be another each time.
+    let mut shared = ImageAttributes::with_size((width as usize, height as usize));
+    shared.other.insert(Text::from(DIGEST), AttributeValue::Text(Text::from(seal::BLANK)));
+    let image = Image::new(shared, layer);
     image.write().to_buffered(out).map_err(plain)
 }
 

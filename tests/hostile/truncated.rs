@@ -1,6 +1,6 @@
 //! Files cut off at every hundredth: what is left is read as what it says, or refused in one line.
 
-use super::{Folder, mesh};
+use super::{Folder, mesh, refusal};
 use catoptric::cli::{parse_answers, parse_samples};
 use catoptric::mesh::{self as meshes, SubdivMesh};
 use catoptric::rig::{Rig, RigFormat};
@@ -172,13 +172,16 @@ fn pictures_and_reports() {
         for (percent, part) in cuts(&whole).step_by(7) {
             folder.write(frame, part);
             let output = folder.run(&args);
-            let message = String::from_utf8_lossy(&output.stderr);
-            assert!(output.status.success() && message.contains("not whole"), "{percent} %: {message}");
+            let message = String::from_utf8_lossy(&output.stderr).into_owned();
             assert!(message.contains(frame), "{percent} %: {message}");
-            assert!(
-                std::fs::read(folder.path(frame)).expect("a frame") == whole,
-                "{percent} % of {frame} are not mended"
-            );
+            let found = std::fs::read(folder.path(frame)).expect("a frame");
+            // What still says that it is the frame is drawn again; what may be somebody else's file is refused.
+            if output.status.success() {
+                assert!(message.contains("not whole") && found == whole, "{percent} %: {message}");
+            } else {
+                refusal(&output);
+                assert!(found == part && percent < 50, "{percent} % of {frame}: {message}");
+            }
         }
     }
     let report = folder.run(&["verify", &cube, "--size=16x16", "--json=whole.json"]);
