@@ -60,9 +60,9 @@ impl SubdivMesh {
         let mut before = self.middle(first, middles);
         let middle_vertex = self.points.len() as u32;
         self.points.push(centre);
-        for k in 0..face.len() {
+        for (k, &corner) in face.iter().enumerate() {
             let after = self.middle(ends(k), middles);
-            self.face_vertices.extend([face[k], after, middle_vertex, before]);
+            self.face_vertices.extend([corner, after, middle_vertex, before]);
             before = after;
         }
     }

@@ -98,7 +98,7 @@ pub fn world_to_ndc(camera: &Camera) -> DMat4 {
 /// without loss. Pixels are put together while they are written, so that this takes no memory beside the layers.
 ///
 /// # Errors
-/// As [`write_whole`]; layers that differ in size are an error too.
+/// As [`write_whole`](super::write_whole); layers that differ in size are an error too.
 pub fn write_exr(path: &Path, layers: &Layers<'_>) -> Result<(), OutputError> {
     write_sealed(path, |out| encode(out, layers), |file| seal::write(file, DIGEST_MARK))
 }

@@ -332,7 +332,7 @@ enum SupportKind {
 pub struct Wedge {
     /// Index into [`Patches::classes`].
     pub class: u32,
-    /// Index into [`Patches::rings`]: the vertex, its spokes and the opposite corners of its quads, which all faces of the fan
+    /// Index into the rings of [`Patches`]: the vertex, its spokes and the opposite corners of its quads, which all faces of the fan
     /// share.
     pub ring: u32,
     /// Which face of the fan it is.

@@ -72,7 +72,7 @@ impl Scene<'_> {
     fn beside(&self, contour: &Contour, face: u32, at: DVec2, along: DVec2) -> Option<DVec3> {
         let zero = |aside: f64| self.zero(contour, face, at + along.perp() * aside);
         let (mut x, mut y) = (0.0, 1e-3);
-        let ((mut fx, _), (mut fy, mut position)) = (zero(x)?, zero(y)?);
+        let ((mut fx, _), (mut fy, _)) = (zero(x)?, zero(y)?);
         for _ in 0..40 {
             let next = y - fy * (y - x) / (fy - fx);
             // Not on another branch of it.
@@ -82,6 +82,7 @@ impl Scene<'_> {
             let step = (next - y).abs();
             (x, fx) = (y, fy);
             y = next;
+            let position;
             (fy, position) = zero(y)?;
             if step < 1e-9 {
                 return Some(position);

@@ -83,7 +83,7 @@ impl Asked {
 enum Seat {
     #[default]
     Empty,
-    Own(Oracle),
+    Own(Box<Oracle>),
     Worker(worker::Worker),
 }
 
@@ -155,7 +155,7 @@ impl<'a> References<'a> {
         let mut seat = seat.lock().unwrap_or_else(PoisonError::into_inner);
         if matches!(*seat, Seat::Empty) {
             *seat = match self.process {
-                Process::Own => Seat::Own(Oracle::new(self.mesh.clone())),
+                Process::Own => Seat::Own(Box::new(Oracle::new(self.mesh.clone()))),
                 Process::Worker { .. } => Seat::Worker(worker::Worker::start(self.process, self.mesh)?),
             };
         }

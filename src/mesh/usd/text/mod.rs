@@ -110,9 +110,7 @@ enum Fate {
 pub(super) fn plain(text: &[u8]) -> Vec<u8> {
     let bare = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
     // The first line is the header, whatever follows the version.
-    if !bare.starts_with(b"#usda 1.")
-        && !(bare.starts_with(b"#usda ") && bare[6..].trim_ascii_start().starts_with(b"1."))
-    {
+    if !bare.strip_prefix(b"#usda ").is_some_and(|version| version.trim_ascii_start().starts_with(b"1.")) {
         return text.to_vec();
     }
     let header = bare.iter().position(|byte| matches!(byte, b'\n' | b'\r')).unwrap_or(bare.len());
