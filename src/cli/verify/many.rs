@@ -27,6 +27,16 @@ pub(super) enum Outcome {
 /// Meshes at a time: most of the work is parallel within a mesh already, and each takes its memory.
 const AT_A_TIME: usize = 4;
 
+/// Processors that there are.
+pub(super) fn processors() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+/// How many of so many meshes are verified at a time.
+pub(super) fn at_a_time(meshes: usize) -> usize {
+    processors().min(AT_A_TIME).min(meshes).max(1)
+}
+
 impl Job<'_> {
     fn verify(&self, input: &Input) -> Result<Outcome, Failure> {
         let report = |input: &Input| -> Result<(MeshReport, Pictures), Refusal> {
@@ -85,7 +95,7 @@ pub(super) fn run(
         bar.finish_and_clear();
         return hand_on(input, outcome);
     }
-    let threads = std::thread::available_parallelism().map_or(1, usize::from).min(AT_A_TIME).min(inputs.len());
+    let threads = at_a_time(inputs.len());
     let steps = Steps::new(inputs.len(), "meshes verified");
     let next = AtomicUsize::new(0);
     let (send, receive) = mpsc::channel();

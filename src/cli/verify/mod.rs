@@ -45,7 +45,7 @@ pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
         return one(args, &inputs, sample);
     }
     let gpu = Gpu::new()?;
-    let job = Job { gpu: &gpu, settings: settings(args)?, pictures: args.html.is_some() };
+    let job = Job { gpu: &gpu, settings: settings(args, inputs.len())?, pictures: args.html.is_some() };
     let show = Show { width: inputs.iter().map(|input| input.name().len()).max().unwrap_or(0), args, of: inputs.len() };
     let (mut meshes, mut pictures, mut refused) = (Vec::new(), Vec::new(), Vec::new());
     many::run(&inputs, &job, |input, outcome| {
@@ -99,11 +99,13 @@ fn write_files(args: &VerifyArgs, report: &Report, pictures: &[Pictures]) -> Res
 }
 
 /// How meshes are verified: OpenSubdiv's evaluators run in processes of this program's own.
-fn settings(args: &VerifyArgs) -> Result<Settings, Failure> {
+fn settings(args: &VerifyArgs, meshes: usize) -> Result<Settings, Failure> {
     let program = std::env::current_exe().map_err(|error| {
         Failure::Bad(format!("cannot find this program, to run OpenSubdiv in a process of its own: {error}"))
     })?;
-    let process = Process::Worker { program, arguments: vec![WORKER.into()] };
+    // As many threads in all as there are processors, or each waits for the others.
+    let threads = (many::processors() / many::at_a_time(meshes)).max(1);
+    let process = Process::Worker { program, arguments: vec![WORKER.into()], threads };
     Ok(Settings { size: args.size, plant: args.plant, process })
 }
 
@@ -138,7 +140,7 @@ fn one(args: &VerifyArgs, inputs: &[Input], (face, u, v): Location) -> Result<()
         Err(error) if error.is_no_adapter() => None,
         Err(error) => return Err(error.into()),
     };
-    let shown = only(&mesh, gpu.as_ref(), Sample { face, u, v }, &settings(args)?)
+    let shown = only(&mesh, gpu.as_ref(), Sample { face, u, v }, &settings(args, 1)?)
         .map_err(|error| Failure::of_input(input, error.to_string()))?;
     if let Some(path) = &args.json {
         write_json(path, &shown)?;

@@ -25,11 +25,12 @@ impl Worker {
     /// # Errors
     /// The program cannot be started.
     pub fn start(process: &Process, mesh: &SubdivMesh) -> Result<Self, ReferenceError> {
-        let Process::Worker { program, arguments } = process else {
+        let Process::Worker { program, arguments, threads } = process else {
             return Err(ReferenceError::NoWorker("there is no program for it".to_owned()));
         };
         let mut command = Command::new(program);
-        command.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
+        command.args(arguments).env("RAYON_NUM_THREADS", threads.to_string());
+        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
         let no_worker = |error: io::Error| ReferenceError::NoWorker(format!("{}: {error}", program.display()));
         let mut child = command.spawn().map_err(no_worker)?;
         let (Some(stdin), Some(stdout)) = (child.stdin.take(), child.stdout.take()) else {
